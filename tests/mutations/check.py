@@ -3,14 +3,15 @@
 
     check.py [--only NAME]... [--room ROOM]... [--applies]
 
-A folder here has the name of a room of harness/, or is `elementary`. Each of its patches is
-applied to a copy of the tree; then the room's tests are built and run. The mutation is noticed if
-they fail. The text at the head of a patch describes the mutation. A line `Survives: why` there
-marks a mutation that the tests need not notice. It is an error if they notice a marked mutation.
+A table here, ROOM.toml, has the name of a room of harness/, or is `elementary`. Each entry is a
+mutation: `text`, which must occur once in `file`, becomes `replacement`. `reason` says what is
+wrong then. The mutation is made in a copy of the tree; then the room's tests are built and run. It
+is noticed if they fail. An entry with `survives`, which says why, need not be noticed. It is an
+error if the tests notice it.
 
 Prints a table and the score. Exits 1 if fewer than 95% are noticed, an unmarked mutation survives
-or a marked one is noticed; 2 if a patch does not apply or the code does not compile. --applies only
-checks whether each patch applies.
+or a marked one is noticed; 2 if a table is wrong, a mutation does not apply or the code does not
+compile. --applies only checks whether each mutation applies.
 """
 
 import argparse
@@ -19,12 +20,13 @@ import pathlib
 import shutil
 import subprocess
 import sys
+import tomllib
 from typing import NamedTuple
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 sys.path.insert(0, str(HERE.parent))
-from patches import Broken, Patch, apply, execute, patches  # noqa: E402
+from commands import Broken, execute  # noqa: E402
 
 COPY = ROOT / "build" / "mutate"
 BOUND = 0.95
@@ -32,27 +34,70 @@ BOUND = 0.95
 TIMEOUT_S = 120
 
 
+REQUIRED = {"reason", "file", "text", "replacement"}
+OPTIONAL = {"survives"}
+
+
 class Mutation(NamedTuple):
     room: str
-    patch: Patch
+    name: str
+    reason: str
+    file: str  # relative to the root of the tree
+    text: str
+    replacement: str
+    survives: str | None = None  # why it is not noticed
 
     @property
     def tests(self) -> str:
         return f"attest_{self.room}_tests"
 
+    def applied(self, root: pathlib.Path) -> str:
+        """The mutated text of its file below `root`."""
+        where = f"tests/mutations/{self.room}.toml: [{self.name}]"
+        if not (root / self.file).is_file():
+            raise Broken(f"{where}: there is no {self.file}: correct `file`")
+        original = (root / self.file).read_text()
+        found = original.count(self.text)
+        if found == 0:
+            raise Broken(f"{where}: `text` is not in {self.file}: copy it from the code of today")
+        if found > 1:
+            raise Broken(
+                f"{where}: `text` occurs {found} times in {self.file}: add lines until it is unique"
+            )
+        return original.replace(self.text, self.replacement)
+
+
+def parsed(path: pathlib.Path, name: str, entry: object) -> Mutation:
+    where = f"tests/mutations/{path.name}: [{name}]"
+    if not isinstance(entry, dict):
+        raise Broken(f"{where}: not a table: an entry begins with its name in brackets")
+    for key in sorted(REQUIRED - entry.keys()):
+        raise Broken(f"{where}: `{key}` is missing: add it")
+    for key in sorted(entry.keys() - REQUIRED - OPTIONAL):
+        raise Broken(f"{where}: unknown key `{key}`: remove it")
+    for key, value in entry.items():
+        if not isinstance(value, str) or (not value.strip() and key != "replacement"):
+            raise Broken(f"{where}: `{key}` must be a string that is not empty")
+    if entry["text"] == entry["replacement"]:
+        raise Broken(f"{where}: `text` and `replacement` are the same: nothing is mutated")
+    return Mutation(path.stem, name, **entry)
+
+
+def table(path: pathlib.Path) -> list[Mutation]:
+    try:
+        entries = tomllib.loads(path.read_text())
+    except tomllib.TOMLDecodeError as error:
+        raise Broken(f"tests/mutations/{path.name}: {error}") from None
+    return [parsed(path, name, entry) for name, entry in entries.items()]
+
 
 def mutations(args: argparse.Namespace) -> list[Mutation]:
     """The selected mutations. Those of one file follow each other, so that the unmutated file is
     compiled again only once."""
-    found = [
-        Mutation(folder.name, patch)
-        for folder in sorted(HERE.iterdir())
-        if folder.is_dir()
-        for patch in patches(folder, "Survives")
-    ]
-    found = [m for m in found if not args.only or m.patch.name in args.only]
+    found = [m for path in HERE.glob("*.toml") for m in table(path)]
+    found = [m for m in found if not args.only or m.name in args.only]
     found = [m for m in found if not args.room or m.room in args.room]
-    return sorted(found, key=lambda m: (m.room, m.patch.files()))
+    return sorted(found, key=lambda m: (m.room, m.file, m.name))
 
 
 def copy_tree() -> None:
@@ -110,7 +155,7 @@ class Judged(NamedTuple):
 
     @property
     def good(self) -> bool:
-        return (self.noticed_by is None) == (self.mutation.patch.marked is not None)
+        return (self.noticed_by is None) == (self.mutation.survives is not None)
 
     @property
     def remark(self) -> str:
@@ -122,16 +167,16 @@ class Judged(NamedTuple):
 
 
 def judge(mutation: Mutation) -> Judged:
-    files = [COPY / name for name in mutation.patch.files()]
-    originals = [file.read_bytes() for file in files]
+    file = COPY / mutation.file
+    original = file.read_bytes() if file.is_file() else None
     try:
-        apply(mutation.patch, COPY)
+        file.write_text(mutation.applied(COPY))
         build([mutation.tests])
         return Judged(mutation, noticed_by=first_failure(mutation.tests))
     except Broken as broken:
         return Judged(mutation, broken=str(broken))
     finally:
-        for file, original in zip(files, originals):
+        if original is not None:
             file.write_bytes(original)
 
 
@@ -155,7 +200,7 @@ def check_all(chosen: list[Mutation]) -> int:
     for mutation in chosen:
         judged = judge(mutation)
         done.append(judged)
-        print(f"| {mutation.room} | {mutation.patch.name} | {judged.remark} |", flush=True)
+        print(f"| {mutation.room} | {mutation.name} | {judged.remark} |", flush=True)
         if judged.broken:
             print(judged.broken, file=sys.stderr, flush=True)
     if any(judged.broken for judged in done):
@@ -164,6 +209,18 @@ def check_all(chosen: list[Mutation]) -> int:
     share = noticed / len(done)
     print(f"\n{noticed} of {len(done)} mutations are noticed: {100 * share:.1f}% (bound 95%)")
     return 0 if share >= BOUND and all(judged.good for judged in done) else 1
+
+
+def check_that_all_apply(chosen: list[Mutation]) -> int:
+    broken = 0
+    for mutation in chosen:
+        try:
+            mutation.applied(ROOT)
+        except Broken as error:
+            broken += 1
+            print(error, file=sys.stderr)
+    print(f"{len(chosen) - broken} of {len(chosen)} mutations apply")
+    return 2 if broken else 0
 
 
 def arguments() -> argparse.Namespace:
@@ -176,20 +233,17 @@ def arguments() -> argparse.Namespace:
 
 def main() -> int:
     args = arguments()
-    chosen = mutations(args)
-    if not chosen:
-        print("no such mutation", file=sys.stderr)
-        return 2
     try:
+        chosen = mutations(args)
+        if not chosen:
+            print("no such mutation", file=sys.stderr)
+            return 2
         if not args.applies:
             return check_all(chosen)
-        for mutation in chosen:
-            apply(mutation.patch, ROOT, "--dry-run")
+        return check_that_all_apply(chosen)
     except Broken as broken:
         print(broken, file=sys.stderr)
         return 2
-    print(f"{len(chosen)} mutations apply")
-    return 0
 
 
 if __name__ == "__main__":

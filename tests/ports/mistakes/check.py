@@ -18,6 +18,7 @@ import concurrent.futures
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -27,7 +28,7 @@ from typing import NamedTuple
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1]))
-from patches import Broken, Patch, apply, execute, patches  # noqa: E402
+from commands import Broken, execute  # noqa: E402
 
 CONTROLLER = HERE.parents[2] / "controller"
 STYLES = {
@@ -46,6 +47,21 @@ TIMEOUT_S = 300
 COMPILES_AT_ONCE = threading.Semaphore(2)
 
 
+class Patch(NamedTuple):
+    path: pathlib.Path
+    passes: str | None  # why no case detects it yet
+
+
+def patches(folder: pathlib.Path) -> list[Patch]:
+    """All patches of a folder, sorted by name."""
+    found = []
+    for path in sorted(folder.glob("*.patch")):
+        head = path.read_text().split("\n--- ", 1)[0]
+        passes = re.search(r"^Passes: (.+)", head, re.MULTILINE | re.DOTALL)
+        found.append(Patch(path, passes and passes[1].strip()))
+    return found
+
+
 class Candidate(NamedTuple):
     """A port to judge: right if it has no patch."""
 
@@ -54,12 +70,12 @@ class Candidate(NamedTuple):
 
     @property
     def name(self) -> str:
-        return self.patch.name if self.patch else "(the right port)"
+        return self.patch.path.stem if self.patch else "(the right port)"
 
     @property
     def passes(self) -> str | None:
         """Why no case detects it yet."""
-        return self.patch and self.patch.marked
+        return self.patch and self.patch.passes
 
 
 class Judged(NamedTuple):
@@ -87,7 +103,7 @@ def candidates() -> list[Candidate]:
     found = []
     for style in STYLES:
         found.append(Candidate(style, None))
-        found += [Candidate(style, patch) for patch in patches(HERE / style, "Passes")]
+        found += [Candidate(style, patch) for patch in patches(HERE / style)]
     return found
 
 
@@ -97,7 +113,9 @@ def copy_sources(candidate: Candidate, folder: pathlib.Path) -> None:
         if source.suffix in SOURCES:
             shutil.copy(source, folder)
     if candidate.patch:
-        apply(candidate.patch, folder)
+        path = candidate.patch.path
+        command = ["patch", "-p1", "--silent", "--no-backup-if-mismatch", "-i", path]
+        execute(command, folder, f"{path} does not apply")
 
 
 def require_that_all_apply() -> None:
