@@ -127,7 +127,7 @@ Result<SweepSummary> report(const PreparedSweep& sweep, const SweepOptions& opti
     if (auto done = html.commit(page); !done) return tl::unexpected(done.error());
   }
   if (!quiet) {
-    fmt::print("{}", render_summary(sweep.sampler, columns, summary, sweep.identity.port, shown));
+    fmt::print("{}", render_sweep(sweep.sampler, columns, summary, sweep.identity.port, shown));
   }
   return summary;
 }

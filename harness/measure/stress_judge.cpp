@@ -178,7 +178,7 @@ void judge_unit(const StressTask& task, Module module, LiveFlight& flight, bool 
   }
   result.ticks = stress.ticks;
   result.elapsed_s = in_seconds(stress.wall);
-  stress.timeline = timeline_of(unit->ticks, limits_of(task.the_case.flight->realtime));
+  stress.timeline = flight_timeline(unit->ticks, limits_of(task.the_case.flight->realtime));
   if (const auto fault = held_to(task.port, task.the_case.profile, unit->fault)) {
     return judge(*fault, result);
   }

@@ -36,7 +36,7 @@ std::vector<TimelineTick> worst_of(const std::vector<LiveTick>& ticks) {
 
 }  // namespace
 
-FlightTimeline timeline_of(const std::vector<LiveTick>& ticks, const TimelineLimits& limits) {
+FlightTimeline flight_timeline(const std::vector<LiveTick>& ticks, const TimelineLimits& limits) {
   FlightTimeline timeline;
   if (ticks.empty()) return timeline;
   const Nanoseconds begin = ticks.front().release;

@@ -38,6 +38,6 @@ struct TimelineLimits {
 };
 
 // At most 400 parts from the first release to the last.
-FlightTimeline timeline_of(const std::vector<LiveTick>& ticks, const TimelineLimits& limits);
+FlightTimeline flight_timeline(const std::vector<LiveTick>& ticks, const TimelineLimits& limits);
 
 }  // namespace attest

@@ -91,7 +91,7 @@ std::string difference_of(const SweepFile& sweep, const PortDifference& port) {
   out += fmt::format("lost by the port only: {}, by the reference only: {}, sign test p {:.2g}{}\n",
                      port.lost_by_port, port.lost_by_reference, port.p_value,
                      port.losses_differ ? "  differs" : "");
-  return out + conclusion_of(port) + "\n";
+  return out + difference_text(port) + "\n";
 }
 
 std::string worst_of(const FlightSampler& sampler, const SweepSummary& summary,
@@ -172,7 +172,7 @@ std::string indices_heading(const SweepFile& sweep, const MetricSummary& metric)
   return heading;
 }
 
-std::string conclusion_of(const PortDifference& port) {
+std::string difference_text(const PortDifference& port) {
   std::vector<std::string> where;
   if (port.losses_differ) where.emplace_back("the number of flights that are lost");
   for (const MetricDifference& one : port.metrics) {
@@ -184,8 +184,7 @@ std::string conclusion_of(const PortDifference& port) {
   if (!port.is_comparison()) {
     return fmt::format(
         "Too few flights to compare the port with the reference: no test can find a difference in "
-        "a "
-        "metric with fewer than {} pairs of flights.",
+        "a metric with fewer than {} pairs of flights.",
         port.pairs_needed);
   }
   return "No test shows a difference between the port and the reference.";
@@ -202,9 +201,9 @@ std::string sim_command_for(const FlightSampler& sampler, std::uint64_t sample,
       port.empty() ? "" : " --port " + shell_word(port), sample);
 }
 
-std::string render_summary(const FlightSampler& sampler, const SampleColumns& columns,
-                           const SweepSummary& summary, const std::string& port,
-                           const std::filesystem::path& kept) {
+std::string render_sweep(const FlightSampler& sampler, const SampleColumns& columns,
+                         const SweepSummary& summary, const std::string& port,
+                         const std::filesystem::path& kept) {
   std::string out = fmt::format("{}; {}: {}\n", heading_of(sampler, summary),
                                 port.empty() ? "reference" : one_line(port), outcomes_of(summary));
   if (const std::string ending = ending_of(sampler.sweep(), summary); !ending.empty()) {

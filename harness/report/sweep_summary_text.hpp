@@ -25,15 +25,15 @@ std::string index_text(double value, const Interval& interval);
 // "Sobol indices of tilts, of 500 blocks (0.95)", and how many blocks are left out.
 std::string indices_heading(const SweepFile& sweep, const MetricSummary& metric);
 // "The port differs from the reference: settles."
-std::string conclusion_of(const PortDifference& port);
-// The command that flies a kept sample again. `port` and `kept`: see render_summary().
+std::string difference_text(const PortDifference& port);
+// The command that flies a kept sample again. `port` and `kept`: see render_sweep().
 std::string sim_command_for(const FlightSampler& sampler, std::uint64_t sample,
                             const std::string& port, const std::filesystem::path& kept);
 
 // `port`: empty if only the reference flew. `kept`: the folder of keep_flights(); empty: no flight
 // was kept.
-std::string render_summary(const FlightSampler& sampler, const SampleColumns& columns,
-                           const SweepSummary& summary, const std::string& port,
-                           const std::filesystem::path& kept);
+std::string render_sweep(const FlightSampler& sampler, const SampleColumns& columns,
+                         const SweepSummary& summary, const std::string& port,
+                         const std::filesystem::path& kept);
 
 }  // namespace attest

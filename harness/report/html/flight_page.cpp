@@ -48,7 +48,7 @@ PageTable metrics_table(const std::vector<SimulatedFlight>& flights) {
   return table;
 }
 
-PageConclusion conclusion_of(const std::vector<SimulatedFlight>& flights, const PortSays& port) {
+PageConclusion page_conclusion(const std::vector<SimulatedFlight>& flights, const PortSays& port) {
   const auto failed = std::find_if(
       flights.begin(), flights.end(),
       [](const SimulatedFlight& flight) { return flight.result.verdict != Verdict::pass; });
@@ -63,7 +63,7 @@ PageConclusion conclusion_of(const std::vector<SimulatedFlight>& flights, const 
 
 std::string flight_page(const std::vector<SimulatedFlight>& flights, const PortSays& port) {
   PlotPage page;
-  page.conclusion = conclusion_of(flights, port);
+  page.conclusion = page_conclusion(flights, port);
   page.tables = {metrics_table(flights)};
   if (page.tables.front().rows.empty()) page.tables.clear();
   std::vector<NamedFlight> flown;

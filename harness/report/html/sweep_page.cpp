@@ -149,7 +149,7 @@ std::string sentence_of(const SweepRun& run) {
                            decided(RequirementDecision::met), decided(RequirementDecision::not_met),
                            decided(RequirementDecision::undecided));
   }
-  if (run.summary.port) sentence += conclusion_of(*run.summary.port) + " ";
+  if (run.summary.port) sentence += difference_text(*run.summary.port) + " ";
   return sentence + fmt::format("Flights: {}.", outcomes_of(run.summary));
 }
 

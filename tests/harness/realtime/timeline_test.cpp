@@ -22,7 +22,7 @@ std::vector<LiveTick> punctual(int count) {
 }
 
 TEST(Timeline, CountsEveryTickOnce) {
-  const FlightTimeline timeline = timeline_of(punctual(1003), {});
+  const FlightTimeline timeline = flight_timeline(punctual(1003), {});
   EXPECT_LE(timeline.parts.size(), 400u);
   std::uint64_t ticks = 0;
   for (const TimelinePart& part : timeline.parts) ticks += part.ticks;
@@ -36,7 +36,7 @@ TEST(Timeline, ShowsWhenStepsAreLateAndLong) {
   ticks[500].cpu = ticks[500].elapsed = us(1500);
   ticks[500].finish = ticks[500].start + us(1500);
   ticks[500].skipped = 1;
-  const FlightTimeline timeline = timeline_of(ticks, {us(100), us(150)});
+  const FlightTimeline timeline = flight_timeline(ticks, {us(100), us(150)});
   EXPECT_EQ(timeline.worst.front().number, 500u);
   std::size_t parts_with_events = 0;
   for (const TimelinePart& part : timeline.parts) {
@@ -56,7 +56,7 @@ TEST(Timeline, ShowsWhenStepsAreLateAndLong) {
   EXPECT_EQ(parts_with_events, 1u);
 }
 
-TEST(Timeline, WithoutATickIsEmpty) { EXPECT_TRUE(timeline_of({}, {}).parts.empty()); }
+TEST(Timeline, WithoutATickIsEmpty) { EXPECT_TRUE(flight_timeline({}, {}).parts.empty()); }
 
 }  // namespace
 }  // namespace attest

@@ -57,7 +57,7 @@ StressRun failed_run() {
   next.release = ms(2);
   next.deadline = next.finish = ms(3);
   stress.misses.late = 1;
-  stress.timeline = timeline_of({tick, next}, {});
+  stress.timeline = flight_timeline({tick, next}, {});
   Histogram latency;
   latency.add(us(8));
   stress.idle = stress.latency = percentiles_of(latency);
