@@ -61,7 +61,7 @@ void whole_suite() {
   VehicleModels vehicle_models(ATTEST_SOURCE_DIR "/models");
   const auto suite_jobs = case_jobs(*cases, ATTEST_SOURCE_DIR "/golden", vehicle_models,
                                     {Level::numeric}, HostOptions());
-  JobOptions<CaseResult> options;
+  JobOptions<VectorResult> options;
   options.processes = suite_processes;
   run_jobs(*suite_jobs, options);
 }

@@ -22,7 +22,7 @@ void suite(benchmark::State& state, int processes, bool isolated = true,
     host.in_process = !isolated;
     const auto jobs =
         case_jobs(*cases, ATTEST_SOURCE_DIR "/golden", vehicle_models, {Level::numeric}, host);
-    JobOptions<CaseResult> options;
+    JobOptions<VectorResult> options;
     options.processes = processes;
     const auto outcome = run_jobs(*jobs, options);
     if (!outcome.errors.empty()) state.SkipWithError(outcome.errors[0].message.c_str());

@@ -20,7 +20,7 @@ Result<std::vector<SelectedCase>> failed_in(const std::string& report,
   const auto earlier = read_report(report);
   if (!earlier) return tl::unexpected(earlier.error());
   std::set<std::string> ids;
-  for (const CaseResult& result : earlier->results) {
+  for (const VectorResult& result : earlier->results) {
     if (!fails_a_run(result.verdict)) continue;
     ids.insert(result.id());
     ids.insert(result.after.begin(), result.after.end());

@@ -18,8 +18,8 @@ namespace attest::cli {
 namespace {
 
 // The part of a result that the report shows; files have neither port nor case.
-CaseResult as_result(const Comparison& comparison) {
-  CaseResult result;
+VectorResult as_result(const Comparison& comparison) {
+  VectorResult result;
   result.ticks = comparison.ticks;
   result.deviating_ticks = comparison.deviating_ticks;
   result.first = comparison.first;

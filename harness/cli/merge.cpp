@@ -166,14 +166,15 @@ Result<void> put_in_order(const std::vector<SelectedCase>& cases, RunResult& run
     }
   }
   std::set<std::string> known;
-  for (const CaseResult& result : run.results) {
+  for (const VectorResult& result : run.results) {
     if (!known.insert(result.id()).second) {
       return fail(fmt::format("{} is in two reports", result.id()));
     }
   }
-  std::sort(run.results.begin(), run.results.end(), [&](const CaseResult& a, const CaseResult& b) {
-    return place.at(a.id()) < place.at(b.id());
-  });
+  std::sort(run.results.begin(), run.results.end(),
+            [&](const VectorResult& a, const VectorResult& b) {
+              return place.at(a.id()) < place.at(b.id());
+            });
   return {};
 }
 

@@ -38,13 +38,13 @@ RunOptions PlottedTraces::planned(RunOptions options) const {
 void PlottedTraces::save(const RunPlan& plan, const SuiteFolder& suite,
                          const RunOptions& options) const {
   std::set<std::string> ids;
-  for (const CaseResult* result : vectors_to_plot(plan.run)) ids.insert(result->id());
+  for (const VectorResult* result : vectors_to_plot(plan.run)) ids.insert(result->id());
   if (!temporary_ || !options.timing.empty() || ids.empty()) return;
   VehicleModels vehicle_models(suite.models());
   const auto jobs =
       case_jobs(keep_vectors(plan.cases, ids), suite.golden(), vehicle_models,
                 {plan.run.level, folder_, plan.run.parameters, plan.suite}, plan.host);
-  JobOptions<CaseResult> again;
+  JobOptions<VectorResult> again;
   again.processes = options.jobs;
   again.in_process = plan.host.in_process;
   again.stop = interrupted;

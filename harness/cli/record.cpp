@@ -23,7 +23,7 @@ Result<Trace> recorded(const RecordOptions& options, const SuiteFolder& suite) {
   if (auto few = check_ticks(*the_case, *rate); !few) return tl::unexpected(few.error());
   const auto host = start_host(options.host);
   if (!host) return tl::unexpected(host.error());
-  Trace trace = inputs_for((*host)->says(), *the_case, *rate);
+  Trace trace = inputs_for((*host)->declarations(), *the_case, *rate);
   const auto fault = (*host)->drive(subject_of(*the_case), trace);
   if (!fault) return trace;
   return fail_at(options.host.port, fmt::format("{}: {}", trace.source, fault->what));

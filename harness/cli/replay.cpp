@@ -107,7 +107,7 @@ Result<void> check_reports(const ReplayOptions& options, const Globals& globals)
 
 // One line per trace or unit, and a second one with the reason if it does not pass. `judged_by`:
 // the level, or "log".
-void print_result(const CaseResult& result, const std::string& title, std::string_view judged_by,
+void print_result(const VectorResult& result, const std::string& title, std::string_view judged_by,
                   std::FILE* out) {
   fmt::print(out, "{:<12}{}  {}", name_of(result.verdict), title, result.profile);
   if (result.ticks > 0) fmt::print(out, "  {} ticks, {}", result.ticks, judged_by);
@@ -173,13 +173,13 @@ class Replay {
   }
 
   // A page shows the whole trace. Without one, the trace need not be in memory as a whole.
-  Result<CaseResult> evaluated(TraceParts& trace, const Subject& subject) {
+  Result<VectorResult> evaluated(TraceParts& trace, const Subject& subject) {
     const Tolerances tolerances(level_);
     if (options_.html.empty()) return evaluate_parts(trace, subject, *host_, tolerances);
     Trace whole, got;
     const auto read = trace.next_part(whole_trace, whole);
     if (!read) return tl::unexpected(read.error());
-    CaseResult result = evaluate_trace(whole, subject, *host_, tolerances, &got);
+    VectorResult result = evaluate_trace(whole, subject, *host_, tolerances, &got);
     keep_page({result.verdict}, [&] { return trace_page(whole, got, result, options_.host.port); });
     return result;
   }
@@ -187,7 +187,7 @@ class Replay {
   Result<void> judge_trace(TraceParts& trace, const Subject& subject) {
     const auto evaluation = evaluated(trace, subject);
     if (!evaluation) return tl::unexpected(evaluation.error());
-    const CaseResult& result = *evaluation;
+    const VectorResult& result = *evaluation;
     count(result);
     entries_.push_back(json_of_trace(result, subject.module));
     const ChannelSet not_compared = channels_of(subject.module, "out/") & ~trace.present();
@@ -247,7 +247,7 @@ class Replay {
     if (!options_.html.empty() && any_result) page_ = make_page();
   }
 
-  void count(const CaseResult& result) {
+  void count(const VectorResult& result) {
     timed_out_ = timed_out_ || result.verdict == Verdict::timeout;
     passed_ += result.verdict == Verdict::pass ? 1 : 0;
     failed_ += fails_a_run(result.verdict) ? 1 : 0;

@@ -29,16 +29,16 @@ Result<void> check_paths(const RunOptions& options, const std::string& suite) {
 // Runs all vectors. False: interrupted, and the results are not complete.
 bool run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
   Progress progress(plan.run.selected, Progress::on_stderr(globals.quiet));
-  JobOptions<CaseResult> jobs;
+  JobOptions<VectorResult> jobs;
   jobs.processes = options.jobs;
   jobs.in_process = options.host.in_process;
   jobs.fail_fast = options.fail_fast;
-  jobs.on_result = [&](const CaseResult& result) { progress.add(result); };
-  jobs.fails = [&](const CaseResult& result) {
+  jobs.on_result = [&](const VectorResult& result) { progress.add(result); };
+  jobs.fails = [&](const VectorResult& result) {
     return fails_a_run(result.verdict) && !(plan.expected && plan.expected->expects(result));
   };
   jobs.stop = interrupted;
-  JobResults<CaseResult> outcome = run_jobs(plan.jobs, jobs);
+  JobResults<VectorResult> outcome = run_jobs(plan.jobs, jobs);
   progress.finish();
   RunResult& run = plan.run;
   run.results = std::move(outcome.results);

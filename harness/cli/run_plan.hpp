@@ -9,7 +9,7 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/verify/case_job.hpp"
-#include "harness/verify/expected.hpp"
+#include "harness/verify/expected_failures.hpp"
 #include "harness/verify/run_result.hpp"
 
 namespace attest::cli {
@@ -20,7 +20,7 @@ struct RunPlan {
   std::optional<ExpectedFailures> expected;
   std::vector<SelectedCase> cases;
   HostOptions host;
-  Jobs<CaseResult> jobs;
+  Jobs<VectorResult> jobs;
   std::shared_ptr<const FileHashes> suite;  // of its files, before the port was first started
 };
 

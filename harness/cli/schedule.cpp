@@ -39,7 +39,7 @@ struct SchedulePlan {
   HostOptions host;
   TaskSet set;
   std::vector<std::vector<TaskJob>> jobs;
-  Jobs<CaseResult> flights;  // two flights: with every tick in time, and as scheduled
+  Jobs<VectorResult> flights;  // two flights: with every tick in time, and as scheduled
   TimingFile scheduled;
 };
 
@@ -100,12 +100,12 @@ int schedule_command(const ScheduleOptions& options, const Globals& globals) {
       return report_error(written.error());
     }
   }
-  const JobResults<CaseResult> outcome = run_jobs(plan->flights, JobOptions<CaseResult>());
+  const JobResults<VectorResult> outcome = run_jobs(plan->flights, JobOptions<VectorResult>());
   if (!outcome.errors.empty()) return report_error(outcome.errors.front());
   if (auto same = check_port(plan->host); !same) return report_error(same.error());
-  const CaseResult& scheduled = outcome.results[1];
+  const VectorResult& scheduled = outcome.results[1];
   if (!globals.quiet) fmt::print("{}", render_flights(outcome.results[0], scheduled));
-  for (const CaseResult& result : outcome.results) {
+  for (const VectorResult& result : outcome.results) {
     if (fails_a_run(result.verdict)) return exit_failed;
     if (result.verdict != Verdict::pass) {
       return report_error({fmt::format("no flight took place: {}", result.reason)});

@@ -121,7 +121,7 @@ Result<std::vector<SimulatedFlight>> fly_all(const Sim& sim, const HostOptions& 
   return flights;
 }
 
-Result<void> write(const std::vector<SimulatedFlight>& flights, const PortSays& port,
+Result<void> write(const std::vector<SimulatedFlight>& flights, const Declarations& port,
                    SimFiles files) {
   const Flown& flown = flights.front().flown;
   if (!files.out.path().empty() && !flown.trace.samples.empty()) {
@@ -135,7 +135,7 @@ Result<void> write(const std::vector<SimulatedFlight>& flights, const PortSays& 
   return files.html.commit(flight_page(flights, port));
 }
 
-void print(const CaseResult& result, const SimOptions& options, bool is_written) {
+void print(const VectorResult& result, const SimOptions& options, bool is_written) {
   std::FILE* const to = options.out == "-" || options.html == "-" ? stderr : stdout;
   std::vector<std::string> files;
   if (result.ticks > 0 && !options.out.empty()) {

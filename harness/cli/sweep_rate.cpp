@@ -24,7 +24,7 @@ struct RateSweepPlan {
   Case the_case;
   std::vector<LoopRate> rates;
   HostOptions host;
-  PortSays port;
+  Declarations port;
   Jobs<RateSweepResult> jobs;
 };
 

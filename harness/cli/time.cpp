@@ -79,7 +79,7 @@ Result<CorpusTimes> timed(const TimeCommandOptions& options, const HostOptions& 
   TimeOptions measure = options.measure;
   measure.stack = measure.stack && !is_program(host.port);  // its stack is in another process
   auto times =
-      time_corpus(cases, measure, host, [&](const CaseResult& result) { progress.add(result); });
+      time_corpus(cases, measure, host, [&](const VectorResult& result) { progress.add(result); });
   progress.finish();
   return times;
 }

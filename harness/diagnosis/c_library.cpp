@@ -65,7 +65,7 @@ constexpr attest_unit law_in_chosen =
         "attest-c-library", "of this machine", extension_in_chosen);
 
 // The number of ticks at which the law has the port's outputs when it makes these calls.
-Result<std::size_t> matches(Trace got, LibraryCalls calls, const PortSays& port,
+Result<std::size_t> matches(Trace got, LibraryCalls calls, const Declarations& port,
                             const Case& the_case, const Tolerances& tolerances) {
   chosen = calls;
   differed = 0;
@@ -102,8 +102,8 @@ std::vector<faults::Fault> make_ports() {
 
 }  // namespace
 
-Result<LibraryMatches> library_matches(const Trace& got, const PortSays& port, const Case& the_case,
-                                       const Tolerances& tolerances) {
+Result<LibraryMatches> library_matches(const Trace& got, const Declarations& port,
+                                       const Case& the_case, const Tolerances& tolerances) {
   LibraryMatches matched;
   std::vector<LibraryCalls> differed_with;
   for (LibraryCalls calls = 0; calls < library_call_sets; ++calls) {

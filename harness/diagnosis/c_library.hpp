@@ -9,7 +9,7 @@
 #include "controller/faults/fault.hpp"
 #include "harness/casefile/case.hpp"
 #include "harness/compare/tolerance.hpp"
-#include "harness/host/port_says.hpp"
+#include "harness/host/declarations.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace attest {
@@ -24,8 +24,8 @@ using LibraryMatches = std::vector<std::size_t>;
 
 // `got` has the port's outputs, which are compared at the level of `tolerances`. A set that a run
 // of the reference cannot tell from a smaller one is not run again.
-Result<LibraryMatches> library_matches(const Trace& got, const PortSays& port, const Case& the_case,
-                                       const Tolerances& tolerances);
+Result<LibraryMatches> library_matches(const Trace& got, const Declarations& port,
+                                       const Case& the_case, const Tolerances& tolerances);
 
 // Describes a port that makes these calls. It is not in the catalogue of faults: such a port is
 // correct. The reference stays valid until the program ends.

@@ -32,9 +32,9 @@ double distance_from_250(const Rate& rate) { return std::abs(std::log(rate.perio
 // nearest to 250 Hz.
 template <typename Wanted>
 std::vector<Vector> vectors_of(const std::vector<SelectedCase>& cases,
-                               const std::vector<CaseResult>& results, Wanted wanted) {
+                               const std::vector<VectorResult>& results, Wanted wanted) {
   std::map<std::string, Rate> nearest;
-  for (const CaseResult& result : results) {
+  for (const VectorResult& result : results) {
     if (result.plant_configuration || !wanted(result)) continue;
     const auto [place, is_new] = nearest.try_emplace(result.case_id(), result.rate.unit);
     if (!is_new && distance_from_250(result.rate.unit) < distance_from_250(place->second)) {
@@ -104,8 +104,8 @@ Result<VectorDiagnosis> Codec<VectorDiagnosis>::decode(const std::string& text) 
 Result<VectorDiagnosis> DiagnosisJob::run(std::size_t) {
   const auto host = start_host(options_);
   if (!host) return tl::unexpected(host.error());
-  const PortSays& port = (*host)->says();
-  if (declines(port, case_.group)) return std::nullopt;
+  const Declarations& port = (*host)->declarations();
+  if (marks_declined(port, case_.group)) return std::nullopt;
   Trace law = inputs_for(port, case_, rate_);
   Trace got = law;
   const Subject subject = subject_of(case_);
@@ -133,13 +133,13 @@ Result<VectorDiagnosis> DiagnosisJob::run(std::size_t) {
 }
 
 Jobs<VectorDiagnosis> diagnosis_jobs(const std::vector<SelectedCase>& cases,
-                                     const std::vector<CaseResult>& results,
+                                     const std::vector<VectorResult>& results,
                                      const HostOptions& options, const faults::Fault* partner,
                                      Level level) {
-  const auto failed = [](const CaseResult& result) {
+  const auto failed = [](const VectorResult& result) {
     return result.first && fails_a_run(result.verdict);
   };
-  const auto passed = [](const CaseResult& result) { return result.verdict == Verdict::pass; };
+  const auto passed = [](const VectorResult& result) { return result.verdict == Verdict::pass; };
   Jobs<VectorDiagnosis> jobs;
   const auto failing = vectors_of(cases, results, failed);
   if (failing.empty()) return jobs;

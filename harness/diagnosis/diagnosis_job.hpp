@@ -51,7 +51,7 @@ class DiagnosisJob final : public PortJob<VectorDiagnosis> {
 // suite. Leaves out flights and long cases. No jobs if no vector failed. REQUIRES: `cases` are
 // those that were run, and outlive the jobs.
 Jobs<VectorDiagnosis> diagnosis_jobs(const std::vector<SelectedCase>& cases,
-                                     const std::vector<CaseResult>& results,
+                                     const std::vector<VectorResult>& results,
                                      const HostOptions& options,
                                      const faults::Fault* partner = nullptr,
                                      Level level = Level::numeric);

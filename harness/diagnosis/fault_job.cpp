@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/core/error_json.hpp"
-#include "harness/host/host_here.hpp"
+#include "harness/host/in_process_host.hpp"
 #include "harness/port/fault_port.hpp"
 #include "harness/verify/evaluate.hpp"
 
@@ -57,7 +57,7 @@ Result<FaultCatch> Codec<FaultCatch>::decode(const std::string& text) {
 Result<FaultCatch> FaultJob::run(std::size_t) {
   auto port = open_fault(fault_.id, fraction_bits_);
   if (!port) return tl::unexpected(port.error());
-  HostHere host(*std::move(port));
+  InProcessHost host(*std::move(port));
   FaultCatch found;
   if (!fault_.profiles->is_of_law_of(profile_)) return found;
   // An undetectable fault without cases of its group is of a module that the cases do not have.

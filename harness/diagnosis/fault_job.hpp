@@ -20,7 +20,7 @@ namespace attest {
 // The first case that caught a fault.
 struct FaultCatch {
   Verdict verdict = Verdict::pass;  // pass: no case caught it
-  std::string by;                   // id of the vector (CaseResult::id)
+  std::string by;                   // id of the vector (VectorResult::id)
   std::optional<std::size_t> tick;  // the first tick with a deviation
 
   bool is_caught() const { return fails_a_run(verdict); }

@@ -9,7 +9,7 @@
 #include "harness/compare/compare.hpp"
 #include "harness/golden/keyframes.hpp"
 #include "harness/golden/reference_flight.hpp"
-#include "harness/host/host_here.hpp"
+#include "harness/host/in_process_host.hpp"
 #include "harness/port/builtin.hpp"
 
 namespace attest {
@@ -42,7 +42,7 @@ Result<std::optional<GoldenTrace>> open_loop_trace(const Case& the_case,
 
 }  // namespace
 
-Reference Reference::own() { return Reference(std::make_unique<HostHere>(open_builtin())); }
+Reference Reference::own() { return Reference(std::make_unique<InProcessHost>(open_builtin())); }
 
 Result<Reference> Reference::of_port(const HostOptions& options) {
   auto host = start_host(options);

@@ -30,7 +30,7 @@ json to_json(const Subject& subject) {
           {"other_profiles", subject.other_profiles}};
 }
 
-json to_json(const PortSays& says) {
+json to_json(const Declarations& says) {
   json out = {{"name", says.name},
               {"version", says.version},
               {"unsupported_groups", says.unsupported_groups},
@@ -41,8 +41,8 @@ json to_json(const PortSays& says) {
   return out;
 }
 
-PortSays says_from(JsonReader in) {
-  PortSays says;
+Declarations declarations_from(JsonReader in) {
+  Declarations says;
   says.name = in.text("name");
   says.version = in.text("version");
   says.unsupported_groups = in.texts("unsupported_groups");
@@ -312,14 +312,14 @@ std::optional<PortFault> read_fault(const Arrived& arrived) {
   return fault ? *fault : std::nullopt;
 }
 
-Result<Result<PortSays>> read_greeting(const Arrived& arrived) {
-  return read_answer(arrived, [](JsonReader& head) -> Result<PortSays> {
+Result<Result<Declarations>> read_greeting(const Arrived& arrived) {
+  return read_answer(arrived, [](JsonReader& head) -> Result<Declarations> {
     if (head.has("error")) return error_in(head);
-    return says_from(head.object("says"));
+    return declarations_from(head.object("says"));
   });
 }
 
-bool greet(const PortSays& says, MessageSocket& judge) {
+bool greet(const Declarations& says, MessageSocket& judge) {
   return judge.send(text_of({{"request", 0}, {"says", to_json(says)}}));
 }
 

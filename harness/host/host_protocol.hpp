@@ -69,13 +69,13 @@ Result<Result<Flown>> read_flown(const Arrived& arrived, const FlightPlan& plan,
                                  Nanoseconds duration);
 Result<Result<StepTimes>> read_times(const Arrived& arrived, std::size_t ticks);
 Result<bool> read_supports(const Arrived& arrived);
-Result<Result<PortSays>> read_greeting(const Arrived& arrived);
+Result<Result<Declarations>> read_greeting(const Arrived& arrived);
 // Reads an answer of a program's host that is a fault only: Kind::crash or Kind::protocol. Empty:
 // it is another answer.
 std::optional<PortFault> read_fault(const Arrived& arrived);
 
 // Of the port's process.
-bool greet(const PortSays& says, MessageSocket& judge);
+bool greet(const Declarations& says, MessageSocket& judge);
 bool refuse(const Error& error, std::uint64_t request, MessageSocket& judge);
 bool give_fault(const PortFault& fault, std::uint64_t request, MessageSocket& judge);
 

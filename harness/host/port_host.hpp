@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/host/port_says.hpp"
+#include "harness/host/declarations.hpp"
 #include "harness/loop/flight.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/schedule/loop_timing.hpp"
@@ -41,7 +41,7 @@ class PortHost {
 
   // The port's declarations, made before the first request or before the run. If they change during
   // a request, that request ends with a fault of kind protocol.
-  virtual const PortSays& says() const = 0;
+  virtual const Declarations& declarations() const = 0;
 
   // Same as drive() of open_loop.hpp, with a fresh instance. If `trace` is a part of a longer one
   // (Subject::part), its first part makes the instance, and its other parts continue with it.

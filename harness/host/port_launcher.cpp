@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "harness/host/host_here.hpp"
 #include "harness/host/host_protocol.hpp"
+#include "harness/host/in_process_host.hpp"
 #include "harness/host/port_process.hpp"
 #include "harness/process/launcher.hpp"
 #include "harness/process/process.hpp"
@@ -27,12 +27,12 @@ struct Served {
 void serve(const Served& served, const PortCalls& calls, MessageSocket& judge) {
   const HostOptions& options = *served.options;
   auto host =
-      open_host_here(options.port, options.said, served.course, &calls, options.files.get());
+      open_in_process_host(options.port, options.said, served.course, &calls, options.files.get());
   if (!host) {
     refuse(host.error(), 0, judge);
     return;
   }
-  bool goes_on = greet((*host)->says(), judge);
+  bool goes_on = greet((*host)->declarations(), judge);
   for (std::uint64_t request = 1; goes_on; ++request) {
     const Received question = judge.receive();
     if (question.kind != Kind::message) return;

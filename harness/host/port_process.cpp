@@ -7,8 +7,8 @@
 
 #include "harness/core/own_arena.hpp"
 #include "harness/host/answer_meter.hpp"
-#include "harness/host/host_here.hpp"
 #include "harness/host/host_protocol.hpp"
+#include "harness/host/in_process_host.hpp"
 #include "harness/host/port_launcher.hpp"
 #include "harness/host/recorded_host.hpp"
 
@@ -35,7 +35,7 @@ class PortProcess final : public PortHost {
   // `port` is empty if it is not started (HostOptions::hangs).
   PortProcess(const HostOptions& options, const Course& course, std::optional<PortChild> port)
       : options_(options), course_(course), port_(std::move(port)) {
-    if (options.said) says_ = *options.said;
+    if (options.said) declarations_ = *options.said;
     if (!port_) fault_ = PortFault{PortFault::Kind::timeout, 0, options.hangs};
   }
 
@@ -50,14 +50,15 @@ class PortProcess final : public PortHost {
       return tl::unexpected(std::move(error));
     }
     if (!options_.said) {
-      says_ = **greeted;
-    } else if (const std::string difference = change(says_, **greeted); !difference.empty()) {
+      declarations_ = **greeted;
+    } else if (const std::string difference = change(declarations_, **greeted);
+               !difference.empty()) {
       give_up(Kind::no_message, "", difference);
     }
     return {};
   }
 
-  const PortSays& says() const override { return says_; }
+  const Declarations& declarations() const override { return declarations_; }
 
   std::optional<PortFault> drive(const Subject& subject, Trace& trace) override {
     const ModuleInfo& module = info_of(subject.module);
@@ -148,7 +149,7 @@ class PortProcess final : public PortHost {
   // The fault of an answer, by the declarations that this process keeps.
   std::optional<PortFault> judged(std::optional<PortFault> fault,
                                   const std::string& profile) const {
-    return with_words(held_to(says_, profile, std::move(fault)), port_->child,
+    return with_words(held_to(declarations_, profile, std::move(fault)), port_->child,
                       is_program(options_.port));
   }
 
@@ -211,7 +212,7 @@ class PortProcess final : public PortHost {
   HostOptions options_;
   Course course_;
   std::optional<PortChild> port_;
-  PortSays says_;
+  Declarations declarations_;
   std::uint64_t request_ = 0;
   AnswerMeter::Limit exceeded_ = AnswerMeter::Limit::none;
   bool was_asked_ = false;          // by a request; after a fault, later ones are `not run`
@@ -237,7 +238,7 @@ Result<std::unique_ptr<PortHost>> start_host(const HostOptions& options, const C
   if (options.start) return options.start(options, course);
   if (const auto folder = recorded_folder(options.port)) return open_recorded_host(*folder);
   if (options.in_process) {
-    return open_host_here(options.port, options.said, course, nullptr, options.files.get());
+    return open_in_process_host(options.port, options.said, course, nullptr, options.files.get());
   }
   auto process = start_process(options, course);
   if (!process) return tl::unexpected(process.error());
@@ -264,7 +265,7 @@ Result<PortDescription> describe_callable(const HostOptions& options,
     description.hangs = fault->what;
     return description;
   }
-  static_cast<PortSays&>(description) = (*host)->says();
+  static_cast<Declarations&>(description) = (*host)->declarations();
   for (const std::string& profile : profiles) {
     host->reset();  // one process of the port at a time
     host = start_process(options, {});
@@ -274,7 +275,7 @@ Result<PortDescription> describe_callable(const HostOptions& options,
       description.goes_wrong = fmt::format("profile {}: {}", profile, fault->what);
       break;
     }
-    if (std::string changed = change(description, (*host)->says()); !changed.empty()) {
+    if (std::string changed = change(description, (*host)->declarations()); !changed.empty()) {
       description.goes_wrong = fmt::format("profile {}: {}", profile, changed);
       break;
     }
@@ -299,7 +300,7 @@ Result<PortDescription> describe_port(const HostOptions& options,
   if (const auto folder = recorded_folder(options.port)) {
     return open_recorded_host(*folder).map([](const auto& host) {
       PortDescription description;
-      static_cast<PortSays&>(description) = host->says();
+      static_cast<Declarations&>(description) = host->declarations();
       return description;
     });
   }

@@ -31,7 +31,7 @@ struct HostOptions {
   std::string port = "builtin";  // as for open_port
   // The declarations that the port made before the run. It must not change them. Empty: those that
   // it makes when it is loaded.
-  std::optional<PortSays> said = {};
+  std::optional<Declarations> said = {};
   // The port's files when the run began. It is not loaded if they have other bytes then; null: not
   // compared.
   std::shared_ptr<const PortFiles> files = nullptr;
@@ -61,16 +61,16 @@ Result<std::unique_ptr<PortHost>> start_host(const HostOptions& options, const C
 Result<void> ensure_host(std::unique_ptr<PortHost>& host, const HostOptions& options);
 
 // The declarations of a port, read in a process of its own.
-struct PortDescription : PortSays {
+struct PortDescription : Declarations {
   std::string hangs;       // the fault, if the port did not answer in time when it was loaded
   std::string goes_wrong;  // its first fault when it was asked for a profile; empty: no fault
   // Profile -> what the port last printed when it made no unit of it; empty if it printed nothing.
   std::map<std::string, std::string> refusals;
 };
 
-// The result has in PortSays::profiles those of `profiles` that the port supports; of a recorded
-// port, all profiles of its vectors. Each profile is requested in a process of its own: so a port
-// that makes a single unit per process is not mistaken for one that supports only the first
+// The result has in Declarations::profiles those of `profiles` that the port supports; of a
+// recorded port, all profiles of its vectors. Each profile is requested in a process of its own: so
+// a port that makes a single unit per process is not mistaken for one that supports only the first
 // profile. After a fault of the port, the remaining profiles are not requested. Errors: the port
 // cannot be loaded, or its process ends while the port is being loaded.
 Result<PortDescription> describe_port(const HostOptions& options,

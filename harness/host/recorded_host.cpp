@@ -21,8 +21,8 @@ std::string profile_of(const std::string& vector_id) {
   return vector_id.substr(0, vector_id.find('/'));
 }
 
-PortSays said_by(const Manifest& manifest) {
-  PortSays says;
+Declarations said_by(const Manifest& manifest) {
+  Declarations says;
   says.name = manifest.port_name;
   says.version = manifest.port_version;
   says.unsupported_groups = manifest.unsupported_groups;
@@ -42,9 +42,11 @@ PortSays said_by(const Manifest& manifest) {
 class RecordedHost final : public PortHost {
  public:
   RecordedHost(std::filesystem::path folder, Manifest manifest)
-      : folder_(std::move(folder)), manifest_(std::move(manifest)), says_(said_by(manifest_)) {}
+      : folder_(std::move(folder)),
+        manifest_(std::move(manifest)),
+        declarations_(said_by(manifest_)) {}
 
-  const PortSays& says() const override { return says_; }
+  const Declarations& declarations() const override { return declarations_; }
 
   std::optional<PortFault> drive(const Subject& subject, Trace& trace) override {
     if (subject.instances != Instances::one) {
@@ -76,13 +78,14 @@ class RecordedHost final : public PortHost {
   }
 
   bool supports(const std::string& profile) override {
-    return std::find(says_.profiles.begin(), says_.profiles.end(), profile) != says_.profiles.end();
+    return std::find(declarations_.profiles.begin(), declarations_.profiles.end(), profile) !=
+           declarations_.profiles.end();
   }
 
  private:
   std::filesystem::path folder_;
   Manifest manifest_;
-  PortSays says_;
+  Declarations declarations_;
 };
 
 bool has_outputs(const std::filesystem::path& folder, const Manifest& manifest) {

@@ -45,7 +45,7 @@ class Smoke {
     auto started = start_host(options_);
     if (!started) return find("steps", "", started.error().to_string());
     host_ = *std::move(started);
-    const Rate rate = host_->says().fixed_step.value_or(Rate::hz(250));
+    const Rate rate = host_->declarations().fixed_step.value_or(Rate::hz(250));
     inputs_ = shaken_vehicle(subject_.module, rate, smoke_steps);
     alone_ = inputs_;
     if (!steps()) return false;
@@ -168,7 +168,7 @@ bool smoke(const HostOptions& options, const std::string& profile,
   }
   const ProfileInfo* const known = find_profile(profile);
   ModuleSet own = only(Module::mc_att_control);
-  if (known) own = known->modules & (*host)->says().modules;
+  if (known) own = known->modules & (*host)->declarations().modules;
   bool is_good = true;
   for (const ModuleInfo& info : modules()) {
     if (!contains(own, info.module) || !info.has_updated) continue;

@@ -26,15 +26,15 @@ constexpr int longest_delay = 5000, delay_step = 20;
 
 class Trial {
  public:
-  Trial(const Case& the_case, PortHost& host, CaseResult& result)
+  Trial(const Case& the_case, PortHost& host, VectorResult& result)
       : case_(the_case), host_(host), result_(result) {}
 
   bool holds(const RunConfiguration& configuration, Nanoseconds delay) {
     if (result_.verdict != Verdict::pass || error_) return false;
     FlightPlan plan{configuration, flight_timing(case_, configuration.rate)};
-    const PortSays& port = host_.says();
+    const Declarations& port = host_.declarations();
     if (has_other_steps(port, case_, configuration.rate.unit, plan.timing, result_)) return false;
-    if (declines(port, result_)) return false;
+    if (marks_declined(port, result_)) return false;
     for (LoopTick& tick : plan.timing.unit) *tick.commanded += delay;
     plan.from_one_period_on = has_fixed_step(port, case_);
     const auto flown = host_.fly(plan);
@@ -68,7 +68,7 @@ class Trial {
 
   const Case& case_;
   PortHost& host_;
-  CaseResult& result_;
+  VectorResult& result_;
   std::vector<RateSweepTrial> trials_;
   std::optional<Error> error_;
 };
@@ -144,7 +144,7 @@ Result<RateSweepResult> Codec<RateSweepResult>::decode(const std::string& text) 
       trials.back().values.push_back(std::stod(value.get<std::string>()));
     }
   }
-  return case_result_from_json(in->at("result")).map([&](CaseResult result) {
+  return vector_result_from_json(in->at("result")).map([&](VectorResult result) {
     return RateSweepResult{std::move(result), figure("lowest_rate_hz"), figure("largest_delay_ms"),
                            std::move(trials)};
   });

@@ -26,7 +26,7 @@ struct RateSweepTrial {
 // Either `lowest_rate_hz` or `largest_delay_ms` is set. It is below 0 if the first flight of the
 // search does not hold, or if the verdict is not pass.
 struct RateSweepResult {
-  CaseResult result;  // pass, or the verdict on a port that did not fly all flights
+  VectorResult result;  // pass, or the verdict on a port that did not fly all flights
   std::optional<double> lowest_rate_hz;
   std::optional<double> largest_delay_ms;   // of the motor commands, beyond the case's own
   std::vector<RateSweepTrial> trials = {};  // in the order of the search

@@ -10,11 +10,11 @@ namespace attest {
 
 Result<SimulatedFlight> simulate_flight(const Case& the_case, FlightPlan plan, PortHost& host) {
   SimulatedFlight flight{result_for(the_case, plan.configuration), {}};
-  CaseResult& result = flight.result;
-  const PortSays& port = host.says();
+  VectorResult& result = flight.result;
+  const Declarations& port = host.declarations();
   if (has_other_steps(port, the_case, plan.configuration.rate.unit, plan.timing, result))
     return flight;
-  if (declines(port, result)) return flight;
+  if (marks_declined(port, result)) return flight;
   plan.from_one_period_on = has_fixed_step(port, the_case);
   auto flown = host.fly(plan);
   if (!flown) return tl::unexpected(flown.error());

@@ -8,7 +8,7 @@
 namespace attest {
 
 struct SimulatedFlight {
-  CaseResult result;
+  VectorResult result;
   Flown flown;  // no ticks if the port has a fault or does not fly; else all ticks up to the end
 };
 

@@ -10,8 +10,8 @@
 
 #include "harness/casefile/case.hpp"
 #include "harness/core/file.hpp"
+#include "harness/host/declarations.hpp"
 #include "harness/host/port_process.hpp"
-#include "harness/host/port_says.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/realtime/cyclictest.hpp"
 #include "harness/realtime/deadline_misses.hpp"
@@ -35,7 +35,7 @@ Percentiles percentiles_of(const Histogram& histogram);
 struct StressResult {
   // The verdict. If the outputs were compared with the reference's, `ticks`, `first` and `tightest`
   // are those of this comparison.
-  CaseResult result;
+  VectorResult result;
   // The unit of the cascade. Empty: the controller, or a result without measurements.
   std::optional<Module> module;
   Percentiles idle;  // wake-up latency of an idle thread (idle_latency())
@@ -68,7 +68,7 @@ struct StressTask {
   Case the_case;  // its duration is that of the run
   RunConfiguration configuration;
   std::shared_ptr<const VehicleModel> vehicle_model;
-  PortSays port;  // the port's declarations before the run
+  Declarations port;  // the port's declarations before the run
   LiveOptions live;
   Nanoseconds idle_duration{0};
   std::shared_ptr<AtomicFile> record_timing;       // for the timing; null: not written

@@ -79,7 +79,7 @@ std::optional<StressResults> declined(const StressTask& task) {
     stress.result.reason = fmt::format("the port has a fixed step of {} Hz", step->to_string());
     return StressResults{stress};
   }
-  if (!declines(task.port, stress.result)) return std::nullopt;
+  if (!marks_declined(task.port, stress.result)) return std::nullopt;
   return StressResults{stress};
 }
 

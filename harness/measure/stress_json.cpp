@@ -191,7 +191,7 @@ json to_json(const StressResult& stress) {
 
 Result<StressResult> stress_from_json(const json& in) {
   if (!in.is_object() || !in.contains("result")) return fail("not the result of a stress run");
-  auto result = case_result_from_json(in["result"]);
+  auto result = vector_result_from_json(in["result"]);
   if (!result) return tl::unexpected(result.error());
   std::string error;
   StressResult stress = read(JsonReader(in, error), error);

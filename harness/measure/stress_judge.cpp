@@ -6,8 +6,8 @@
 
 #include "harness/loop/flight.hpp"
 #include "harness/port/builtin.hpp"
-#include "harness/verify/answers.hpp"
 #include "harness/verify/judge.hpp"
+#include "harness/verify/reference_comparison.hpp"
 
 namespace attest {
 namespace {
@@ -21,7 +21,7 @@ constexpr double late_starts_share = 0.01;
 int gravity(Verdict verdict) { return fails_a_run(verdict) ? 2 : verdict == Verdict::pass ? 0 : 1; }
 
 // Keeps the more severe verdict, and puts its reason first.
-void add(CaseResult& result, Verdict verdict, std::string reason) {
+void add(VectorResult& result, Verdict verdict, std::string reason) {
   const bool is_graver = gravity(verdict) > gravity(result.verdict);
   if (is_graver) result.verdict = verdict;
   if (result.reason.empty()) {
@@ -87,17 +87,19 @@ std::string in_ms(Nanoseconds time) { return fmt::format("{:.3g} ms", 1000 * in_
 
 }  // namespace
 
-void add_skip(CaseResult& result, const std::string& reason) { add(result, Verdict::skip, reason); }
+void add_skip(VectorResult& result, const std::string& reason) {
+  add(result, Verdict::skip, reason);
+}
 
 void judge_outputs(const Case& the_case, Module module, LiveUnitRecord& unit,
-                   std::optional<int> fraction_bits, CaseResult& result) {
+                   std::optional<int> fraction_bits, VectorResult& result) {
   Trace got;
   got.present = channels_of(module);
   got.samples = std::move(unit.samples);
   got.parameters = std::move(unit.changes);
   if (got.samples.empty()) return add_skip(result, "outputs not judged: no step finished");
   const std::size_t compared = got.samples.size();
-  const auto answers = compare_answers(
+  const auto answers = compare_with_reference(
       got, the_case.profile, tolerances_of(the_case, Level::numeric, fraction_bits, compared),
       fraction_bits);
   if (!answers) return add_skip(result, "outputs not judged: " + answers.error().to_string());
@@ -118,7 +120,7 @@ void judge_outputs(const Case& the_case, Module module, LiveUnitRecord& unit,
   }
 }
 
-void judge_flight_end(const StressTask& task, const LiveFlight& flight, CaseResult& result) {
+void judge_flight_end(const StressTask& task, const LiveFlight& flight, VectorResult& result) {
   const auto& lost = flight.plant.divergence;
   if (!lost || fails_a_run(result.verdict)) return;
   const std::string how =
@@ -169,7 +171,7 @@ void judge_clock(const Wait& wait, const std::vector<LiveTick>& ticks, StressRes
 
 void judge_unit(const StressTask& task, Module module, LiveFlight& flight, bool of_end,
                 StressResult& stress) {
-  CaseResult& result = stress.result;
+  VectorResult& result = stress.result;
   LiveUnitRecord* unit = &flight.unit;
   const LiveUnitRecord* other = flight.attitude_unit ? &*flight.attitude_unit : nullptr;
   if (module == Module::attitude_unit) {

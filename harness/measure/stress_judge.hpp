@@ -14,17 +14,17 @@ namespace attest {
 
 // Compares the outputs with those of the reference for the same inputs at the same times. So late
 // and missing ticks do not excuse wrong outputs. Adds a skip if outputs cannot be judged: there is
-// no tick, there are more ticks than checked_ticks, or Answers::undecided is set. Moves samples and
-// parameter changes out of `unit`. REQUIRES: a port without a fixed step.
+// no tick, there are more ticks than checked_ticks, or ReferenceComparison::undecided is set. Moves
+// samples and parameter changes out of `unit`. REQUIRES: a port without a fixed step.
 void judge_outputs(const Case& the_case, Module module, LiveUnitRecord& unit,
-                   std::optional<int> fraction_bits, CaseResult& result);
+                   std::optional<int> fraction_bits, VectorResult& result);
 
 // Judges a flight that ended because the vehicle was lost, unless the result has failed already. If
 // the result is a pass, all outputs agree with the reference's, and it becomes a skip. If it is a
 // skip, the reference flies in simulation at the same times; if the reference does not lose the
 // vehicle, the result becomes a failure. REQUIRES: judge_outputs() was called before, unless the
 // port has a fixed step.
-void judge_flight_end(const StressTask& task, const LiveFlight& flight, CaseResult& result);
+void judge_flight_end(const StressTask& task, const LiveFlight& flight, VectorResult& result);
 
 // Compares the figures of `stress` with the budget. A port fails for too many overruns, or for too
 // many misses or late starts that are the port's (deadline_misses.hpp). If the port does not fail
@@ -43,6 +43,6 @@ void judge_unit(const StressTask& task, Module module, LiveFlight& flight, bool 
                 StressResult& stress);
 
 // Adds a verdict of skip with this reason. A failure stays a failure.
-void add_skip(CaseResult& result, const std::string& reason);
+void add_skip(VectorResult& result, const std::string& reason);
 
 }  // namespace attest

@@ -24,7 +24,7 @@ class Stopwatches {
       return tl::unexpected(started.error());
     }
     VectorTimes times{result_for(the_case, configuration), {}, {}, the_case.module};
-    if (declines(host_->says(), times.result)) return times;
+    if (marks_declined(host_->declarations(), times.result)) return times;
     const Trace inputs = stimulate(the_case, configuration.rate.unit);
     for (int repeat = 0; repeat < options_.repeats; ++repeat) {
       const bool with_stack = options_.stack && repeat + 1 == options_.repeats;
@@ -130,7 +130,7 @@ std::map<Module, Histogram> CorpusTimes::by_module() const {
 
 Result<CorpusTimes> time_corpus(const std::vector<SelectedCase>& cases, const TimeOptions& options,
                                 const HostOptions& host,
-                                const std::function<void(const CaseResult&)>& on_result) {
+                                const std::function<void(const VectorResult&)>& on_result) {
   Stopwatches stopwatches(options, host);
   CorpusTimes times{{}, histogram_for(options), {}};
   for (const auto& [the_case, configurations] : cases) {

@@ -24,7 +24,7 @@ struct TimeOptions {
 };
 
 struct VectorTimes {
-  CaseResult result;                       // pass, or why there are no times
+  VectorResult result;                     // pass, or why there are no times
   std::vector<Nanoseconds> steps;          // the shortest time of each step
   std::optional<std::size_t> stack_bytes;  // the most stack that a step used
   Module module = Module::mc_att_control;  // whose steps were timed
@@ -53,7 +53,7 @@ struct CorpusTimes {
 // open-loop cases of units.
 Result<CorpusTimes> time_corpus(const std::vector<SelectedCase>& cases, const TimeOptions& options,
                                 const HostOptions& host,
-                                const std::function<void(const CaseResult&)>& on_result);
+                                const std::function<void(const VectorResult&)>& on_result);
 
 // Writes the vector of the slowest step up to that step, with the port's outputs, for `attest
 // replay`. Runs the port again. Errors: no vector was timed, the port cannot be opened or has a

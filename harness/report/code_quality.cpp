@@ -31,7 +31,7 @@ const char* severity_of(Verdict verdict) {
 std::string code_quality_report(const RunResult& run, const std::optional<Diagnosis>& diagnosis) {
   nlohmann::ordered_json entries = nlohmann::ordered_json::array();
   std::set<std::string> known;
-  for (const CaseResult& result : run.results) {
+  for (const VectorResult& result : run.results) {
     const std::string key = fmt::format("{} {}", result.case_id(), name_of(result.verdict));
     if (!fails_a_run(result.verdict) || !known.insert(key).second) continue;
     std::string what = fmt::format("{}: {}: {}", one_line(result.id()), name_of(result.verdict),

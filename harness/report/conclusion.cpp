@@ -26,7 +26,7 @@ std::string verdict_counts(const RunResult& run, Wanted wanted) {
 
 std::string setting(const RunResult& run) {
   std::vector<std::string> profiles;
-  for (const CaseResult& result : run.results) {
+  for (const VectorResult& result : run.results) {
     if (result.verdict == Verdict::skip) continue;
     const std::string profile = one_line(result.profile);
     if (std::find(profiles.begin(), profiles.end(), profile) == profiles.end()) {
@@ -61,7 +61,7 @@ std::string conclusion_text(const RunResult& run, std::string_view duration) {
   std::string out;
   const auto failed = static_cast<std::size_t>(
       std::count_if(run.results.begin(), run.results.end(),
-                    [](const CaseResult& result) { return fails_a_run(result.verdict); }));
+                    [](const VectorResult& result) { return fails_a_run(result.verdict); }));
   if (failed > 0) {
     const std::string kinds = verdict_counts(run, fails_a_run);
     const bool only_fail = kinds == fmt::format("{} {}", failed, name_of(Verdict::fail));
@@ -80,7 +80,7 @@ std::string conclusion_text(const RunResult& run, std::string_view duration) {
 
 std::string first_stages(const RunResult& run) {
   std::array<std::size_t, stage_count> counts{};
-  for (const CaseResult& result : run.results) {
+  for (const VectorResult& result : run.results) {
     if (!fails_a_run(result.verdict) || !result.first) continue;
     ++counts[static_cast<std::size_t>(stage_of(*result.first))];
   }

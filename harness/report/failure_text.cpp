@@ -95,7 +95,7 @@ std::string attest_with_suite(const RunResult& run) {
 
 }  // namespace
 
-std::string worst_text(const CaseResult& result) {
+std::string worst_text(const VectorResult& result) {
   if (!result.worst) return {};
   const Deviation& worst = *result.worst;
   if (result.first && result.first->tick == worst.tick && result.first->channel == worst.channel) {
@@ -132,12 +132,12 @@ std::string distance_text(const Deviation& deviation, Level level) {
   return out + fmt::format(": {} times the tolerance", times(difference / deviation.tolerance));
 }
 
-std::string reason_text(const CaseResult& result) {
+std::string reason_text(const VectorResult& result) {
   const std::string reason = one_line(result.reason);
   return reason.empty() ? std::string(meaning_of(result.verdict)) : reason;
 }
 
-std::string sim_command(const CaseResult& result, const RunResult& run) {
+std::string sim_command(const VectorResult& result, const RunResult& run) {
   return one_line(
       fmt::format("{} sim {} --rate {} --vehicle {} --plant {} --port {} "
                   "--out flown.csv",
@@ -146,7 +146,7 @@ std::string sim_command(const CaseResult& result, const RunResult& run) {
                   name_of(result.plant_configuration->plant), shell_word(run.port)));
 }
 
-std::string failure_headline(const CaseResult& result) {
+std::string failure_headline(const VectorResult& result) {
   const std::string out = reason_text(result);
   if (!result.first) return out;
   const Deviation& deviation = *result.first;
@@ -171,7 +171,7 @@ std::string metric_bounds(const MetricResult& metric) {
   return fmt::format("{:g} to {:g}", metric.min, metric.max);
 }
 
-std::string reproduce_command(const CaseResult& result, const RunResult& run) {
+std::string reproduce_command(const VectorResult& result, const RunResult& run) {
   if (run.command == "stress") {
     return one_line(fmt::format("{} stress --port {} --case {} --rate {}", attest_with_suite(run),
                                 shell_word(run.port), shell_word(result.case_id()),
@@ -195,7 +195,7 @@ std::string reproduce_command(const CaseResult& result, const RunResult& run) {
   return one_line(out);
 }
 
-std::string finding_text(const CaseResult& result, Level level) {
+std::string finding_text(const VectorResult& result, Level level) {
   std::string out;
   if (result.first) out += first_deviation(*result.first, level);
   if (const std::string worst = worst_text(result); !worst.empty()) {
@@ -208,7 +208,7 @@ std::string finding_text(const CaseResult& result, Level level) {
   return out;
 }
 
-std::string failure_text(const CaseResult& result, const RunResult& run) {
+std::string failure_text(const VectorResult& result, const RunResult& run) {
   std::string out = fmt::format("{}\n  {}: {}\n", one_line(result.id()), name_of(result.verdict),
                                 reason_text(result));
   out += finding_text(result, run.level);

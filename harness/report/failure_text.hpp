@@ -10,19 +10,19 @@
 namespace attest {
 
 // One line, without the id: "outputs differ; first at tick 17: out/... got -1.5, want -1".
-std::string failure_headline(const CaseResult& result);
+std::string failure_headline(const VectorResult& result);
 
 // Several lines, the first of which is the id; no newline at the end. `run` gives the port and the
 // level for the command that reproduces the failure.
-std::string failure_text(const CaseResult& result, const RunResult& run);
+std::string failure_text(const VectorResult& result, const RunResult& run);
 
 // The first deviation, the worst one and the number of deviating ticks, without id and commands:
 // for traces outside the suite. Empty if the result has no deviation.
-std::string finding_text(const CaseResult& result, Level level);
+std::string finding_text(const VectorResult& result, Level level);
 
 // "tick 412, in out/...: off by 0.3, 1500 times the tolerance". The worst deviation; empty if that
 // is the first deviation, or unknown.
-std::string worst_text(const CaseResult& result);
+std::string worst_text(const VectorResult& result);
 
 // "rate law or the integrator", of Deviation::stages.
 std::string stages_text(const StageSet& stages);
@@ -31,14 +31,14 @@ std::string stages_text(const StageSet& stages);
 std::string metric_bounds(const MetricResult& metric);
 
 // "attest run --port lib:./mine.so --filter 'px4-v1.5.5/attitude/roll_30@250hz'". Also selects the
-// vectors CaseResult::after, without which the vector may pass.
-std::string reproduce_command(const CaseResult& result, const RunResult& run);
+// vectors VectorResult::after, without which the vector may pass.
+std::string reproduce_command(const VectorResult& result, const RunResult& run);
 
 // The command that writes the trace of a flight. REQUIRES: a plant configuration.
-std::string sim_command(const CaseResult& result, const RunResult& run);
+std::string sim_command(const VectorResult& result, const RunResult& run);
 
 // The reason on one line; without a reason, the meaning of the verdict.
-std::string reason_text(const CaseResult& result);
+std::string reason_text(const VectorResult& result);
 
 // "out/vehicle_rates_setpoint.roll [rad/s]"
 std::string channel_with_unit(const Channel& channel);

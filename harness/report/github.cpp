@@ -31,10 +31,10 @@ std::string encoded(std::string_view text, std::string_view also = "") {
 std::string property(std::string_view text) { return encoded(text, ":,"); }
 
 // The first failing vector of each group, then the other ones.
-std::vector<const CaseResult*> failures_by_group(const RunResult& run) {
-  std::vector<const CaseResult*> first, others;
+std::vector<const VectorResult*> failures_by_group(const RunResult& run) {
+  std::vector<const VectorResult*> first, others;
   std::set<std::string> groups;
-  for (const CaseResult& result : run.results) {
+  for (const VectorResult& result : run.results) {
     if (!fails_a_run(result.verdict)) continue;
     const bool is_first = groups.insert(result.profile + "/" + result.group).second;
     (is_first ? first : others).push_back(&result);
@@ -59,7 +59,7 @@ std::string github_annotations(const RunResult& run) {
   const auto failing = failures_by_group(run);
   std::string out;
   for (std::size_t i = 0; i < std::min(failing.size(), annotations_shown); ++i) {
-    const CaseResult& result = *failing[i];
+    const VectorResult& result = *failing[i];
     out += fmt::format(
         "::error title={}::{}\n",
         property(fmt::format("{} {}", name_of(result.verdict), one_line(result.id()))),

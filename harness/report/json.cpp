@@ -43,7 +43,7 @@ ordered_json errors(const RunResult& run) {
 // The members in an order that is easy to read, without the elapsed times.
 ordered_json results(const RunResult& run) {
   ordered_json out = ordered_json::array();
-  for (const CaseResult& result : run.results) {
+  for (const VectorResult& result : run.results) {
     const nlohmann::json all = to_json(result);
     ordered_json entry;
     for (const char* key : {"id", "profile", "group", "name", "rate", "vehicle", "plant", "verdict",

@@ -126,20 +126,20 @@ pugi::xml_node add_test(pugi::xml_node suite, const std::string& classname, cons
   return test;
 }
 
-std::string suite_name(const CaseResult& result) {
+std::string suite_name(const VectorResult& result) {
   return one_line(result.profile + "." + result.group);
 }
 
 // Each failure contains the diagnosis, because on the page of one test CI servers do not show the
 // rest of the run.
-std::string failure_content(const CaseResult& result, const RunResult& run,
+std::string failure_content(const VectorResult& result, const RunResult& run,
                             const std::optional<Diagnosis>& diagnosis) {
   const std::string text = failure_text(result, run);
   if (!diagnosis || !result.first) return text;
   return text + "\nFrom all failures in this run, " + diagnosis_text(*diagnosis);
 }
 
-void add_result(pugi::xml_node suite, const CaseResult& result, const RunResult& run,
+void add_result(pugi::xml_node suite, const VectorResult& result, const RunResult& run,
                 const std::optional<Diagnosis>& diagnosis) {
   const std::string name = one_line(result.name + "@" + result.configuration().label());
   const pugi::xml_node test = add_test(suite, suite_name(result), name, result.elapsed_s);
@@ -164,12 +164,12 @@ pugi::xml_node add_suite(pugi::xml_node root, const std::string& name, const Cou
 struct Suite {
   std::string name;
   Counts counts;
-  std::vector<const CaseResult*> results;
+  std::vector<const VectorResult*> results;
 };
 
 std::vector<Suite> suites_of(const RunResult& run) {
   std::vector<Suite> suites;
-  for (const CaseResult& result : run.results) {
+  for (const VectorResult& result : run.results) {
     const std::string name = suite_name(result);
     auto suite = std::find_if(suites.begin(), suites.end(),
                               [&name](const Suite& known) { return known.name == name; });
@@ -205,7 +205,7 @@ struct StringWriter : pugi::xml_writer {
 std::string junit_report(const RunResult& run, const std::optional<Diagnosis>& diagnosis) {
   const std::vector<Suite> suites = suites_of(run);
   Counts all;
-  for (const CaseResult& result : run.results) {
+  for (const VectorResult& result : run.results) {
     all.add(outcome_of(result.verdict), usable(result.elapsed_s));
   }
   for (std::size_t i = 0; i < run.errors.size(); ++i) all.add(Outcome::error, 0);
@@ -221,7 +221,7 @@ std::string junit_report(const RunResult& run, const std::optional<Diagnosis>& d
   set_attribute(root, "time", seconds(all.time_s));
   for (const Suite& suite : suites) {
     const pugi::xml_node node = add_suite(root, suite.name, suite.counts, run);
-    for (const CaseResult* result : suite.results) add_result(node, *result, run, diagnosis);
+    for (const VectorResult* result : suite.results) add_result(node, *result, run, diagnosis);
   }
   add_environment(root, run);
   StringWriter writer;

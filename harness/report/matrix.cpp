@@ -36,7 +36,7 @@ int severity(Verdict verdict) {
   return 0;
 }
 
-MatrixCell cell_of(const CaseResult& result) {
+MatrixCell cell_of(const VectorResult& result) {
   MatrixCell cell;
   cell.worst = result.verdict;
   if (fails_a_run(result.verdict)) {
@@ -53,13 +53,13 @@ MatrixCell cell_of(const CaseResult& result) {
 
 std::vector<LoopRate> rates_of(const RunResult& run) {
   std::vector<LoopRate> rates = run.rates;
-  for (const CaseResult& result : run.results) rates.push_back(result.rate);
+  for (const VectorResult& result : run.results) rates.push_back(result.rate);
   std::sort(rates.begin(), rates.end());
   rates.erase(std::unique(rates.begin(), rates.end()), rates.end());
   return rates;
 }
 
-MatrixRow& row_of(const CaseResult& result, Matrix& matrix) {
+MatrixRow& row_of(const VectorResult& result, Matrix& matrix) {
   const auto found =
       std::find_if(matrix.rows.begin(), matrix.rows.end(), [&](const MatrixRow& row) {
         return row.profile == result.profile && row.group == result.group;
@@ -93,7 +93,7 @@ std::string text_of(const MatrixCell& cell) {
 Matrix matrix_of(const RunResult& run) {
   Matrix matrix;
   matrix.rates = rates_of(run);
-  for (const CaseResult& result : run.results) {
+  for (const VectorResult& result : run.results) {
     const auto rate = std::lower_bound(matrix.rates.begin(), matrix.rates.end(), result.rate);
     MatrixRow& row = row_of(result, matrix);
     const MatrixCell cell = cell_of(result);

@@ -28,7 +28,7 @@ Progress::Options Progress::on_stderr(bool quiet) {
   return options;
 }
 
-void Progress::add(const CaseResult& result, Clock::time_point now) {
+void Progress::add(const VectorResult& result, Clock::time_point now) {
   add(fails_a_run(result.verdict), result.id(), now);
 }
 

@@ -35,7 +35,7 @@ class Progress {
 
   // Counts one more result. Draws at most once per redraw_interval. From the second drawing on, the
   // line has the results per second and the remaining time.
-  void add(const CaseResult& result, Clock::time_point now = Clock::now());
+  void add(const VectorResult& result, Clock::time_point now = Clock::now());
   void add(bool failed, const std::string& latest, Clock::time_point now = Clock::now());
   void finish();
 

@@ -103,7 +103,7 @@ void read_selection(JsonReader reader, RunResult& run) {
 bool is_negative_or_nan(double value) { return !(value >= 0); }
 
 // A number in the result that attest does not write; empty if there is none.
-std::string impossible_number(const CaseResult& result) {
+std::string impossible_number(const VectorResult& result) {
   for (const auto& deviation : {result.first, result.worst}) {
     if (deviation && is_negative_or_nan(deviation->tolerance)) {
       return fmt::format("a tolerance of {}", deviation->tolerance);
@@ -121,7 +121,7 @@ std::string impossible_number(const CaseResult& result) {
 }
 
 // What contradicts a verdict that says that all compared outputs were right; empty if nothing does.
-std::string sign_of_failure(const CaseResult& result) {
+std::string sign_of_failure(const VectorResult& result) {
   if (result.first || result.worst) return "has a deviation";
   if (result.deviating_ticks > 0)
     return fmt::format("has {} deviating ticks", result.deviating_ticks);
@@ -139,7 +139,7 @@ std::string sign_of_failure(const CaseResult& result) {
 }
 
 // What in the result contradicts the rest of the report; empty if nothing does.
-std::string contradiction(const CaseResult& result, const RunResult& run) {
+std::string contradiction(const VectorResult& result, const RunResult& run) {
   if (std::string number = impossible_number(result); !number.empty()) return "has " + number;
   const auto& rates = run.rates;
   if (std::find(rates.begin(), rates.end(), result.rate) == rates.end()) {
@@ -158,7 +158,7 @@ std::string contradiction(const CaseResult& result, const RunResult& run) {
 void read_results(JsonReader& reader, RunResult& run) {
   std::set<std::string> known;
   for (const json& one : reader.list("results")) {
-    auto result = case_result_from_json(one);
+    auto result = vector_result_from_json(one);
     if (!result) return reader.wrong(result.error().message);
     const std::string id = result->id();
     std::string error;
@@ -237,7 +237,7 @@ Result<ReadReport> read_report(const std::string& path) {
 namespace {
 
 // What in the result contradicts the level of its case; empty if nothing does.
-std::string_view contradiction_of_level(const CaseResult& result, const Case& the_case,
+std::string_view contradiction_of_level(const VectorResult& result, const Case& the_case,
                                         Level level) {
   if (result.exact_only && !the_case.exact_only) {
     return "is skipped as a vector of the exact level, but its case is compared at every level";
@@ -262,7 +262,7 @@ Result<void> check_against(const std::vector<SelectedCase>& cases, const ReadRep
       ++rates[configuration.rate];
     }
   }
-  for (const CaseResult& result : run.results) {
+  for (const VectorResult& result : run.results) {
     const auto found = vectors.find(result.id());
     if (found == vectors.end()) {
       return fail_at(path, fmt::format("{} is no vector of the suite", result.id()));

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json entry_of(const CaseResult& result, Module module, const char* kind) {
+ordered_json entry_of(const VectorResult& result, Module module, const char* kind) {
   return {{"file", result.name},
           {"kind", kind},
           {"module", name_of(module)},
@@ -54,7 +54,7 @@ ordered_json topic_of(const TopicAgreement& topic, const LoggedOutput& logged,
 
 }  // namespace
 
-ordered_json json_of_trace(const CaseResult& result, Module module) {
+ordered_json json_of_trace(const VectorResult& result, Module module) {
   ordered_json entry = entry_of(result, module, "trace");
   const nlohmann::json all = to_json(result);
   for (const char* key : {"deviating_ticks", "first", "worst", "tightest"}) {

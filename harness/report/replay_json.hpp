@@ -32,7 +32,7 @@
 
 namespace attest {
 
-nlohmann::ordered_json json_of_trace(const CaseResult& result, Module module);
+nlohmann::ordered_json json_of_trace(const VectorResult& result, Module module);
 // REQUIRES: `result` is that of `unit`, which is a unit of `log`.
 nlohmann::ordered_json json_of_unit(const FlightLog& log, const LoggedUnit& unit,
                                     const LogResult& result, const LogLimits& limits);

@@ -5,7 +5,7 @@
 #include "harness/report/json.hpp"
 #include "harness/report/junit.hpp"
 #include "harness/report/statement.hpp"
-#include "harness/verify/expected.hpp"
+#include "harness/verify/expected_failures.hpp"
 
 namespace attest {
 namespace {

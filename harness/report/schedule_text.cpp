@@ -63,7 +63,7 @@ std::string render_delays(const TaskSet& set, const std::vector<std::vector<Task
          delays("attitude unit", "setpoint", jobs[*set.attitude_unit], timing.attitude_unit);
 }
 
-std::string render_flights(const CaseResult& in_time, const CaseResult& scheduled) {
+std::string render_flights(const VectorResult& in_time, const VectorResult& scheduled) {
   std::string out = fmt::format("{:<44}{:>12}{:>12}\n", in_time.case_id(), "in time", "scheduled");
   for (std::size_t i = 0; i < in_time.metrics.size() && i < scheduled.metrics.size(); ++i) {
     const MetricResult& metric = in_time.metrics[i];

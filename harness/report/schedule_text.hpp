@@ -19,6 +19,6 @@ std::string render_delays(const TaskSet& set, const std::vector<std::vector<Task
                           const FlightTiming& timing);
 
 // The metrics of the scheduled flight, compared with the same flight with every tick in time.
-std::string render_flights(const CaseResult& in_time, const CaseResult& scheduled);
+std::string render_flights(const VectorResult& in_time, const VectorResult& scheduled);
 
 }  // namespace attest

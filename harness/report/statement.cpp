@@ -38,9 +38,9 @@ std::string which_groups(const Claim& claim) {
 
 // Fixed point has wider tolerances at the numeric level, and for flights at every level.
 std::string arithmetic_of(const RunResult& run) {
-  const bool flew =
-      std::any_of(run.results.begin(), run.results.end(),
-                  [](const CaseResult& result) { return result.plant_configuration.has_value(); });
+  const bool flew = std::any_of(
+      run.results.begin(), run.results.end(),
+      [](const VectorResult& result) { return result.plant_configuration.has_value(); });
   if (!run.fraction_bits || (run.level != Level::numeric && !flew)) return "";
   return fmt::format(" for fixed point with {} fraction bits", *run.fraction_bits);
 }

@@ -96,13 +96,13 @@ std::string reason_of(const StressResult& stress) {
 }
 
 // Adds the result of a unit to `all`, the result of the flight so far.
-void add_unit(const StressResult& unit, CaseResult& all) {
+void add_unit(const StressResult& unit, VectorResult& all) {
   const std::string before = all.reason, reason = reason_of(unit);
   if (gravity(unit.result.verdict) > gravity(all.verdict)) all = unit.result;
   all.reason = fmt::format("{}{}{}", before, before.empty() || reason.empty() ? "" : "; ", reason);
 }
 
-std::string outputs(const CaseResult& result) {
+std::string outputs(const VectorResult& result) {
   if (result.deviating_ticks == 0 && !result.first) {
     return result.tightest ? fmt::format(
                                  "  outputs agree with the reference's for the same inputs "
@@ -124,7 +124,7 @@ std::string human_time(Nanoseconds time) {
 }
 
 std::string render_stress(const StressResult& stress, TerminalStyle style) {
-  const CaseResult& result = stress.result;
+  const VectorResult& result = stress.result;
   const std::string of_unit = stress.module ? fmt::format(", {}", title_of(stress)) : "";
   std::string out = painted(one_line(result.id()) + of_unit, Colour::bold, style) + "\n";
   if (stress.ticks > 0) {
@@ -161,7 +161,7 @@ std::string render_privileges(const std::vector<RealtimePrivilege>& privileges) 
 
 std::vector<std::string> rates_not_judged(const StressRun& run) {
   std::vector<std::string> rates;
-  for (const CaseResult& result : run_of(run).results) {
+  for (const VectorResult& result : run_of(run).results) {
     if (!is_judged(result.verdict)) rates.push_back(result.rate.to_string());
   }
   return rates;

@@ -24,14 +24,14 @@ namespace attest {
 namespace {
 
 // Results that are shown together, in the order of the run.
-using Together = std::vector<const CaseResult*>;
+using Together = std::vector<const VectorResult*>;
 
 // Groups the results for which `wanted` is true. Two results for which `equal` is true are in the
 // same group.
 template <typename Wanted, typename Equal>
 std::vector<Together> grouped(const RunResult& run, Wanted wanted, Equal equal) {
   std::vector<Together> groups;
-  for (const CaseResult& result : run.results) {
+  for (const VectorResult& result : run.results) {
     if (!wanted(result)) continue;
     const auto group = std::find_if(groups.begin(), groups.end(), [&](const Together& known) {
       return equal(*known.front(), result);
@@ -61,13 +61,13 @@ std::string header(const RunResult& run) {
 std::string others(const Together& group) {
   if (group.front()->plant_configuration) return "in " + counted(group.size() - 1, "more flight");
   std::vector<std::string> rates;
-  for (const CaseResult* result : group) rates.push_back(result->rate.to_string());
+  for (const VectorResult* result : group) rates.push_back(result->rate.to_string());
   rates.erase(rates.begin());
   return fmt::format("at {} Hz", fmt::join(rates, ", "));
 }
 
 std::string failure(const Together& group, const RunResult& run, TerminalStyle style) {
-  const CaseResult& shown = *group.front();
+  const VectorResult& shown = *group.front();
   const std::string text = failure_text(shown, run);
   const std::size_t line = text.find('\n');
   std::string out = painted(text.substr(0, line), Colour::red, style) + text.substr(line) + "\n";
@@ -78,14 +78,14 @@ std::string failure(const Together& group, const RunResult& run, TerminalStyle s
   return out + "\n";
 }
 
-std::string group_and_verdict(const CaseResult& result) {
+std::string group_and_verdict(const VectorResult& result) {
   return fmt::format("{}/{} {}", result.profile, result.group, name_of(result.verdict));
 }
 
 std::string failures(const RunResult& run, TerminalStyle style, Failures shown) {
   const auto cases = grouped(
-      run, [](const CaseResult& result) { return fails_a_run(result.verdict); },
-      [](const CaseResult& a, const CaseResult& b) {
+      run, [](const VectorResult& result) { return fails_a_run(result.verdict); },
+      [](const VectorResult& a, const VectorResult& b) {
         return a.verdict == b.verdict && a.case_id() == b.case_id();
       });
   std::string out;
@@ -108,7 +108,7 @@ std::string failures(const RunResult& run, TerminalStyle style, Failures shown) 
 std::string cases_of(const Together& group) {
   constexpr std::size_t named = 3;
   std::vector<std::string> ids;
-  for (const CaseResult* result : group) {
+  for (const VectorResult* result : group) {
     const std::string id = one_line(result->case_id());
     if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
   }
@@ -123,8 +123,8 @@ std::string counted_apart(const RunResult& run) {
   std::string out;
   for (const Verdict verdict : {Verdict::unsupported, Verdict::skip, Verdict::xfail}) {
     const auto groups = grouped(
-        run, [verdict](const CaseResult& result) { return result.verdict == verdict; },
-        [](const CaseResult& a, const CaseResult& b) { return a.reason == b.reason; });
+        run, [verdict](const VectorResult& result) { return result.verdict == verdict; },
+        [](const VectorResult& a, const VectorResult& b) { return a.reason == b.reason; });
     for (const Together& group : groups) {
       const std::string reason = one_line(group.front()->reason);
       out += fmt::format("  {} {}: {}\n      {}\n", group.size(), name_of(verdict),
@@ -153,7 +153,7 @@ std::string_view plural_of(Quantity quantity) {
   }
 }
 
-Quantity quantity_of(const CaseResult& result) {
+Quantity quantity_of(const VectorResult& result) {
   return channels()[result.tightest->channel].quantity;
 }
 
@@ -163,13 +163,15 @@ std::string headroom(const RunResult& run) {
   if (run.level != Level::numeric || run.count(Verdict::pass) == 0) return {};
   const auto groups = grouped(
       run,
-      [](const CaseResult& result) {
+      [](const VectorResult& result) {
         return result.verdict == Verdict::pass && result.tightest &&
                std::isfinite(result.tightest->ratio);
       },
-      [](const CaseResult& a, const CaseResult& b) { return quantity_of(a) == quantity_of(b); });
+      [](const VectorResult& a, const VectorResult& b) {
+        return quantity_of(a) == quantity_of(b);
+      });
   if (groups.empty()) return "tightest headroom: every value that passed agrees to the bit\n\n";
-  const auto tighter = [](const CaseResult* a, const CaseResult* b) {
+  const auto tighter = [](const VectorResult* a, const VectorResult* b) {
     return a->tightest->ratio < b->tightest->ratio;
   };
   Together tightest;
@@ -180,7 +182,7 @@ std::string headroom(const RunResult& run) {
   std::string out =
       "tightest headroom (tolerance / difference), by quantity, where it is the tightest of a "
       "vector:\n";
-  for (const CaseResult* result : tightest) {
+  for (const VectorResult* result : tightest) {
     const Headroom& headroom = *result->tightest;
     out += fmt::format("  {:<9}  {:.1f}x on {} in {} at tick {}\n", plural_of(quantity_of(*result)),
                        headroom.ratio, channels()[headroom.channel].name, one_line(result->id()),

@@ -123,7 +123,7 @@ std::string what_went_wrong(const TimeRun& run) {
     repeated = 0;
   };
   for (const VectorTimes& vector : run.times.vectors) {
-    const CaseResult& result = vector.result;
+    const VectorResult& result = vector.result;
     if (!fails_a_run(result.verdict)) continue;
     if (result.reason == last_reason) {
       ++repeated;

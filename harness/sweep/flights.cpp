@@ -12,7 +12,7 @@
 
 #include "harness/compare/compare.hpp"
 #include "harness/core/error_json.hpp"
-#include "harness/host/host_here.hpp"
+#include "harness/host/in_process_host.hpp"
 #include "harness/host/port_launcher.hpp"
 #include "harness/loop/case_timing.hpp"
 #include "harness/measure/simulate.hpp"
@@ -76,7 +76,7 @@ Result<std::string> fly_sample(const FlightSampler& sampler, const SampledFlight
                                std::uint64_t index, const FlightsOptions& options) {
   const SampledFlight of_reference = for_reference(sample, options);
   std::vector<FlightResult> flights;
-  HostHere reference(open_builtin(), {}, {&of_reference.the_case, sample.vehicle_model.get()});
+  InProcessHost reference(open_builtin(), {}, {&of_reference.the_case, sample.vehicle_model.get()});
   auto flown = simulate(sampler, of_reference, reference);
   if (flown && options.with_port) {
     const SimulatedSample by_reference = *std::move(flown);

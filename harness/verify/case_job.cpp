@@ -11,12 +11,12 @@
 
 namespace attest {
 
-std::string Codec<CaseResult>::encode(const Result<CaseResult>& result) {
-  return attest::encode(result.map([](const CaseResult& one) { return to_json(one); }));
+std::string Codec<VectorResult>::encode(const Result<VectorResult>& result) {
+  return attest::encode(result.map([](const VectorResult& one) { return to_json(one); }));
 }
 
-Result<CaseResult> Codec<CaseResult>::decode(const std::string& text) {
-  return attest::decode(text).and_then(case_result_from_json);
+Result<VectorResult> Codec<VectorResult>::decode(const std::string& text) {
+  return attest::decode(text).and_then(vector_result_from_json);
 }
 
 CaseJob::CaseJob(const std::vector<SelectedCase>& cases,
@@ -52,7 +52,7 @@ void CaseJob::close() {
   golden_of_.reset();
 }
 
-Result<CaseResult> CaseJob::run(std::size_t task) {
+Result<VectorResult> CaseJob::run(std::size_t task) {
   const Vector& vector = vectors_[task];
   auto result = judged(vector);
   if (result && fails_a_run(result->verdict) && !judged_by_host_.empty()) {
@@ -69,7 +69,7 @@ Result<CaseResult> CaseJob::run(std::size_t task) {
   return result;
 }
 
-Result<CaseResult> CaseJob::repeated_alone(const Vector& vector, CaseResult failed) {
+Result<VectorResult> CaseJob::repeated_alone(const Vector& vector, VectorResult failed) {
   failed.after = judged_by_host_;
   if (failed.verdict == Verdict::timeout) return failed;
   if (auto started = start(); !started) return tl::unexpected(started.error());
@@ -91,7 +91,7 @@ Result<void> CaseJob::open_golden(const Vector& vector) {
   return {};
 }
 
-Result<CaseResult> CaseJob::judged(const Vector& vector) {
+Result<VectorResult> CaseJob::judged(const Vector& vector) {
   if (auto opened = open_golden(vector); !opened) return tl::unexpected(opened.error());
   const Case& the_case = *vector.the_case;
   const RunConfiguration& configuration = vector.configuration;
@@ -101,7 +101,7 @@ Result<CaseResult> CaseJob::judged(const Vector& vector) {
                          judge_.save_traces);
 }
 
-Result<CaseResult> TimedJob::run(std::size_t) {
+Result<VectorResult> TimedJob::run(std::size_t) {
   const auto host = start_host(options_, {&case_, vehicle_model_.get()});
   if (!host) return tl::unexpected(host.error());
   return evaluate_timed_flight(case_, timing_.configuration, *vehicle_model_, timing_.ticks, **host,
@@ -154,11 +154,11 @@ std::vector<CasesOfJob> cases_of_jobs(const std::vector<SelectedCase>& cases) {
 
 }  // namespace
 
-Result<Jobs<CaseResult>> case_jobs(const std::vector<SelectedCase>& cases,
-                                   const std::filesystem::path& golden_root,
-                                   VehicleModels& vehicle_models, const JudgeOptions& judge,
-                                   const HostOptions& options) {
-  Jobs<CaseResult> jobs;
+Result<Jobs<VectorResult>> case_jobs(const std::vector<SelectedCase>& cases,
+                                     const std::filesystem::path& golden_root,
+                                     VehicleModels& vehicle_models, const JudgeOptions& judge,
+                                     const HostOptions& options) {
+  Jobs<VectorResult> jobs;
   for (const CasesOfJob& of_job : cases_of_jobs(cases)) {
     std::shared_ptr<const VehicleModel> vehicle_model;
     if (const auto& plant = plant_of(of_job.front())) {

@@ -23,19 +23,19 @@
 namespace attest {
 
 template <>
-struct Codec<CaseResult> {
-  static std::string encode(const Result<CaseResult>& result);
-  static Result<CaseResult> decode(const std::string& text);
+struct Codec<VectorResult> {
+  static std::string encode(const Result<VectorResult>& result);
+  static Result<VectorResult> decode(const std::string& text);
 };
 
 // Judges vectors in one process of the port. Those of flights are all of one case, with the same
 // vehicle and plant.
 //
 // A failure after other vectors is repeated in a new process, and the result is that of the
-// repetition. If the vector passes there, the failure stays, and CaseResult::after names the
+// repetition. If the vector passes there, the failure stays, and VectorResult::after names the
 // others. So each failure can be reproduced. A timeout is not repeated; the other vectors of its
 // case time out too. After any other failure the next vector has a new process.
-class CaseJob final : public PortJob<CaseResult> {
+class CaseJob final : public PortJob<VectorResult> {
  public:
   // `vehicle_model` is that of the flights' vehicle; null for open loop.
   CaseJob(const std::vector<SelectedCase>& cases, std::shared_ptr<const VehicleModel> vehicle_model,
@@ -43,7 +43,7 @@ class CaseJob final : public PortJob<CaseResult> {
 
   std::size_t size() const override { return vectors_.size(); }
   Result<void> open() override;
-  Result<CaseResult> run(std::size_t task) override;
+  Result<VectorResult> run(std::size_t task) override;
   bool is_spent() const override { return !host_ || host_->is_spent() || needs_new_process_; }
   void close() override;
 
@@ -55,8 +55,8 @@ class CaseJob final : public PortJob<CaseResult> {
 
   Result<void> start();
   Result<void> open_golden(const Vector& vector);
-  Result<CaseResult> judged(const Vector& vector);
-  Result<CaseResult> repeated_alone(const Vector& vector, CaseResult failed);
+  Result<VectorResult> judged(const Vector& vector);
+  Result<VectorResult> repeated_alone(const Vector& vector, VectorResult failed);
 
   std::vector<Vector> vectors_;
   std::shared_ptr<const VehicleModel> vehicle_model_;
@@ -70,7 +70,7 @@ class CaseJob final : public PortJob<CaseResult> {
 };
 
 // Judges a flight at recorded times.
-class TimedJob final : public PortJob<CaseResult> {
+class TimedJob final : public PortJob<VectorResult> {
  public:
   TimedJob(Case the_case, TimingFile timing, std::shared_ptr<const VehicleModel> vehicle_model,
            std::filesystem::path saved_traces, HostOptions options)
@@ -81,7 +81,7 @@ class TimedJob final : public PortJob<CaseResult> {
         saved_traces_(std::move(saved_traces)) {}
 
   std::size_t size() const override { return 1; }
-  Result<CaseResult> run(std::size_t task) override;
+  Result<VectorResult> run(std::size_t task) override;
 
  private:
   Case case_;
@@ -94,9 +94,9 @@ class TimedJob final : public PortJob<CaseResult> {
 // several cases of one group are if together they have only few vectors. A flight is one job for
 // each plant configuration, so that several workers fly it at the same time. Errors: a vehicle
 // cannot be loaded.
-Result<Jobs<CaseResult>> case_jobs(const std::vector<SelectedCase>& cases,
-                                   const std::filesystem::path& golden_root,
-                                   VehicleModels& vehicle_models, const JudgeOptions& judge,
-                                   const HostOptions& options);
+Result<Jobs<VectorResult>> case_jobs(const std::vector<SelectedCase>& cases,
+                                     const std::filesystem::path& golden_root,
+                                     VehicleModels& vehicle_models, const JudgeOptions& judge,
+                                     const HostOptions& options);
 
 }  // namespace attest

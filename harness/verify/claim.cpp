@@ -39,12 +39,12 @@ bool has_step(const LoopRate& rate, const Rate& step) {
 
 // Whether a fixed step of the port excludes the rate of the result. Such results do not count as
 // unsupported, because the claim names the fixed step.
-bool is_of_another_step(const CaseResult& result, const RunResult& run) {
+bool is_of_another_step(const VectorResult& result, const RunResult& run) {
   return run.fixed_step && !has_step(result.rate, *run.fixed_step) &&
          result.verdict == Verdict::unsupported;
 }
 
-void add(const CaseResult& result, const RunResult& run, Group& group) {
+void add(const VectorResult& result, const RunResult& run, Group& group) {
   Tally& tally = group.rates[result.rate];
   ++tally.run;
   const bool is_exact_only =
@@ -66,7 +66,7 @@ std::map<std::string, Groups> groups_of(const RunResult& run) {
     Group& group = profiles[name.substr(0, slash)][name.substr(slash + 1)];
     for (const auto& [rate, cases] : rates) group.rates[rate].in_suite = cases;
   }
-  for (const CaseResult& result : run.results) {
+  for (const VectorResult& result : run.results) {
     add(result, run, profiles[result.profile][result.group]);
   }
   return profiles;

@@ -10,7 +10,7 @@
 #include "harness/compare/events.hpp"
 #include "harness/golden/keyframes.hpp"
 #include "harness/golden/recorded.hpp"
-#include "harness/host/host_here.hpp"
+#include "harness/host/in_process_host.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/port/builtin.hpp"
 #include "harness/trace/provenance.hpp"
@@ -26,22 +26,22 @@ namespace {
 // outputs. After a fault, `answered` keeps only the ticks before it.
 void run_and_judge(Trace& answered, const Trace& want, const Subject& subject, PortHost& host,
                    const Tolerances& tolerances, const std::filesystem::path& saved_traces,
-                   CaseResult& result) {
-  if (declines(host.says(), result)) return;
+                   VectorResult& result) {
+  if (marks_declined(host.declarations(), result)) return;
   const auto fault = host.drive(subject, answered);
-  if (host.says().is_recorded && !fault &&
-      !leaves_values_to_judge(host.says().not_recorded, want)) {
+  if (host.declarations().is_recorded && !fault &&
+      !leaves_values_to_judge(host.declarations().not_recorded, want)) {
     result.verdict = Verdict::skip;
     result.reason = "no value is recorded: the manifest lists every output under not_recorded";
     return;
   }
-  if (host.says().is_recorded) fill_in(host.says().not_recorded, want, answered);
+  if (host.declarations().is_recorded) fill_in(host.declarations().not_recorded, want, answered);
   if (fault && !leaves_ticks_to_judge(*fault)) {
     judge(*fault, result);
   } else {
     if (fault) leave_out_from(fault->tick, want, answered);
     judge(compare(answered, want, tolerances), result);
-    if (host.says().is_recorded && fails_a_run(result.verdict)) {
+    if (host.declarations().is_recorded && fails_a_run(result.verdict)) {
       explain_recording(answered, want, result);
     }
     if (fault) judge_after(*fault, result);
@@ -54,9 +54,9 @@ void run_and_judge(Trace& answered, const Trace& want, const Subject& subject, P
 // Runs a case that is compared at the exact level only at another level: its outputs are not
 // judged, but the port must make all steps. It may refuse a parameter, because values such as NaN
 // need not be allowed. The answers of a recorded port are outputs only.
-void run_uncompared(Trace inputs, const Subject& subject, PortHost& host, CaseResult& result) {
-  if (declines(host.says(), result)) return;
-  if (!host.says().is_recorded) {
+void run_uncompared(Trace inputs, const Subject& subject, PortHost& host, VectorResult& result) {
+  if (marks_declined(host.declarations(), result)) return;
+  if (!host.declarations().is_recorded) {
     const auto fault = host.drive(subject, inputs);
     if (fault && fault->kind != PortFault::Kind::refused) return judge(*fault, result);
   }
@@ -101,7 +101,7 @@ Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& g
 Result<Prepared> prepare_varied(const Case& the_case, const Case& begun, const Rate& rate,
                                 const Golden& golden,
                                 const std::vector<ParameterChange>& parameters) {
-  HostHere reference(open_builtin());
+  InProcessHost reference(open_builtin());
   const auto checked = evaluate_case(the_case, rate, golden, reference, {Level::exact});
   if (!checked) return tl::unexpected(checked.error());
   if (checked->verdict != Verdict::pass) {
@@ -133,8 +133,8 @@ std::vector<ParameterChange> accepted_by(const Subject& subject,
 
 }  // namespace
 
-CaseResult result_for(const Case& the_case, const RunConfiguration& configuration) {
-  CaseResult result;
+VectorResult result_for(const Case& the_case, const RunConfiguration& configuration) {
+  VectorResult result;
   result.profile = the_case.profile;
   result.group = the_case.group;
   result.name = the_case.name;
@@ -143,23 +143,23 @@ CaseResult result_for(const Case& the_case, const RunConfiguration& configuratio
   return result;
 }
 
-CaseResult result_for(const std::string& recorded, const std::string& profile) {
-  CaseResult result;
+VectorResult result_for(const std::string& recorded, const std::string& profile) {
+  VectorResult result;
   result.profile = profile;
   result.name = recorded;
   return result;
 }
 
-Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const Golden& golden,
-                                 PortHost& host, const JudgeOptions& options) {
+Result<VectorResult> evaluate_case(const Case& the_case, const Rate& rate, const Golden& golden,
+                                   PortHost& host, const JudgeOptions& options) {
   const Stopwatch stopwatch;
   Level level = options.level;
-  CaseResult result = result_for(the_case, {rate, std::nullopt});
-  if (has_other_steps(host.says(), the_case, rate, result)) return result;
-  const bool is_shifted = has_fixed_step(host.says(), the_case);
+  VectorResult result = result_for(the_case, {rate, std::nullopt});
+  if (has_other_steps(host.declarations(), the_case, rate, result)) return result;
+  const bool is_shifted = has_fixed_step(host.declarations(), the_case);
   const auto parameters = accepted_by(subject_of(the_case), options.parameters);
   if (the_case.exact_only && level != Level::exact) {
-    Trace inputs = inputs_for(host.says(), the_case, rate);
+    Trace inputs = inputs_for(host.declarations(), the_case, rate);
     for (const ParameterChange& parameter : parameters) override_parameter(parameter, inputs);
     run_uncompared(std::move(inputs), subject_of(the_case), host, result);
     result.elapsed_s = stopwatch.elapsed_s();
@@ -174,7 +174,7 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
   const bool numeric_for_exact = level == Level::exact && the_case.numeric_only;
   const bool numeric_for_events = level == Level::events && !has_events(the_case.module);
   if (numeric_for_exact || numeric_for_events) level = Level::numeric;
-  const auto bits = host.says().fraction_bits;
+  const auto bits = host.declarations().fraction_bits;
   const std::size_t ticks = prepared->answered.samples.size();
   run_and_judge(prepared->answered, prepared->want, subject_of(the_case), host,
                 tolerances_of(the_case, level, bits, ticks), options.save_traces, result);
@@ -184,8 +184,8 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
 
 namespace {
 
-Tolerances tolerances_of_trace(const Tolerances& tolerances, Module module, const PortSays& port,
-                               std::size_t ticks) {
+Tolerances tolerances_of_trace(const Tolerances& tolerances, Module module,
+                               const Declarations& port, std::size_t ticks) {
   const bool numeric_for_events = tolerances.level() == Level::events && !has_events(module);
   Tolerances allowed = numeric_for_events ? Tolerances(Level::numeric) : tolerances;
   if (port.fraction_bits) allowed.allow_lsb(*port.fraction_bits, ticks);
@@ -194,15 +194,15 @@ Tolerances tolerances_of_trace(const Tolerances& tolerances, Module module, cons
 
 }  // namespace
 
-CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHost& host,
-                          const Tolerances& tolerances, Trace* got) {
+VectorResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHost& host,
+                            const Tolerances& tolerances, Trace* got) {
   const Stopwatch stopwatch;
-  CaseResult result = result_for(recorded.source, subject.profile);
-  if (has_other_steps(host.says(), recorded, subject.module, result)) return result;
+  VectorResult result = result_for(recorded.source, subject.profile);
+  if (has_other_steps(host.declarations(), recorded, subject.module, result)) return result;
   Trace answered = recorded;
   for (Sample& sample : answered.samples) sample.clear_outputs();
   const Tolerances allowed =
-      tolerances_of_trace(tolerances, subject.module, host.says(), recorded.samples.size());
+      tolerances_of_trace(tolerances, subject.module, host.declarations(), recorded.samples.size());
   run_and_judge(answered, recorded, subject, host, allowed, {}, result);
   result.elapsed_s = stopwatch.elapsed_s();
   if (got != nullptr) *got = std::move(answered);
@@ -214,7 +214,7 @@ namespace {
 // For a port whose verdict depends on the whole trace before its first step: reads the trace, and
 // returns the number of its ticks. For any other port returns 0.
 Result<std::size_t> count_ticks(TraceParts& recorded, std::size_t most_ticks, Module module,
-                                const PortSays& port, CaseResult& result) {
+                                const Declarations& port, VectorResult& result) {
   if (!port.fraction_bits && !port.fixed_step) return 0;
   auto ticks =
       for_each_part(recorded, most_ticks, [&](const Trace& part, std::size_t first_tick, bool) {
@@ -250,9 +250,9 @@ Result<Comparison> drive_parts(TraceParts& recorded, std::size_t most_ticks, Sub
 
 }  // namespace
 
-Result<CaseResult> evaluate_parts(TraceParts& recorded, const Subject& subject, PortHost& host,
-                                  const Tolerances& tolerances, std::size_t most_ticks) {
-  const PortSays& port = host.says();
+Result<VectorResult> evaluate_parts(TraceParts& recorded, const Subject& subject, PortHost& host,
+                                    const Tolerances& tolerances, std::size_t most_ticks) {
+  const Declarations& port = host.declarations();
   if (tolerances.level() == Level::events || port.is_recorded) {
     Trace whole;
     auto read = recorded.next_part(std::numeric_limits<std::size_t>::max(), whole);
@@ -260,10 +260,10 @@ Result<CaseResult> evaluate_parts(TraceParts& recorded, const Subject& subject, 
     return evaluate_trace(whole, subject, host, tolerances);
   }
   const Stopwatch stopwatch;
-  CaseResult result = result_for(recorded.file(), subject.profile);
+  VectorResult result = result_for(recorded.file(), subject.profile);
   const auto ticks = count_ticks(recorded, most_ticks, subject.module, port, result);
   if (!ticks) return tl::unexpected(ticks.error());
-  if (result.verdict != Verdict::pass || declines(port, result)) return result;
+  if (result.verdict != Verdict::pass || marks_declined(port, result)) return result;
   const Tolerances allowed = tolerances_of_trace(tolerances, subject.module, port, *ticks);
   std::optional<PortFault> fault;
   const auto compared = drive_parts(recorded, most_ticks, subject, host, allowed, fault);

@@ -34,14 +34,14 @@ struct JudgeOptions {
 
 // A result that names its vector, or the file of a recorded trace; the other members have their
 // defaults.
-CaseResult result_for(const Case& the_case, const RunConfiguration& configuration);
-CaseResult result_for(const std::string& recorded, const std::string& profile);
+VectorResult result_for(const Case& the_case, const RunConfiguration& configuration);
+VectorResult result_for(const std::string& recorded, const std::string& profile);
 
 // Generates the case's inputs at that rate, gives them to a fresh unit, and compares the outputs
 // with the golden. Errors: the golden is missing, or is not that of this case; the reference does
 // not agree with the golden, if the inputs must be changed for the port or by `options`.
-Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const Golden& golden,
-                                 PortHost& host, const JudgeOptions& options);
+Result<VectorResult> evaluate_case(const Case& the_case, const Rate& rate, const Golden& golden,
+                                   PortHost& host, const JudgeOptions& options);
 
 // Flies a fresh unit. Compares each output with that of the reference for the same inputs, the
 // flight with the golden up to the golden's horizon, and the metrics with their bounds and the
@@ -49,18 +49,19 @@ Result<CaseResult> evaluate_case(const Case& the_case, const Rate& rate, const G
 // bits between processors. `saved_traces`: the folder of save_traces(); empty: not saved. REQUIRES:
 // the host's course is this case with this vehicle model. Errors: those of evaluate_case(); the
 // flight cannot be set up.
-Result<CaseResult> evaluate_flight(const Case& the_case, const RunConfiguration& configuration,
-                                   const VehicleModel& vehicle_model, const Golden& golden,
-                                   PortHost& host, const std::filesystem::path& saved_traces = {});
+Result<VectorResult> evaluate_flight(const Case& the_case, const RunConfiguration& configuration,
+                                     const VehicleModel& vehicle_model, const Golden& golden,
+                                     PortHost& host,
+                                     const std::filesystem::path& saved_traces = {});
 
 // The same at recorded times, for which no golden exists. The flight of the reference at the same
 // times takes the place of the golden. A bound that the reference violates in that flight is not
 // applied. Errors: the flight cannot be set up; the reference loses the vehicle at these times.
-Result<CaseResult> evaluate_timed_flight(const Case& the_case,
-                                         const RunConfiguration& configuration,
-                                         const VehicleModel& vehicle_model,
-                                         const FlightTiming& timing, PortHost& host,
-                                         const std::filesystem::path& saved_traces = {});
+Result<VectorResult> evaluate_timed_flight(const Case& the_case,
+                                           const RunConfiguration& configuration,
+                                           const VehicleModel& vehicle_model,
+                                           const FlightTiming& timing, PortHost& host,
+                                           const std::filesystem::path& saved_traces = {});
 
 // "the flight ended at 0.412 s (tick 103): the body rate is 81 rad/s, beyond 80". REQUIRES:
 // Flown::divergence is set.
@@ -69,15 +70,15 @@ std::string how_it_ended(const Flown& flown);
 // Gives the recorded inputs to a fresh instance of the subject's module, and compares the outputs
 // with the recorded ones. `got`, unless null, becomes the trace with the port's outputs, up to the
 // fault if there was one. If a fixed step of the port excludes the trace, `got` does not change.
-CaseResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHost& host,
-                          const Tolerances& tolerances, Trace* got = nullptr);
+VectorResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHost& host,
+                            const Tolerances& tolerances, Trace* got = nullptr);
 
 // The same, in memory that does not grow with the length of the trace: at most `most_ticks` are in
 // memory. But the events level, which looks ahead, and a recorded port need the whole trace. For a
 // port with a fixed step or in fixed point, the trace is read twice. Errors: those of TraceParts.
 inline constexpr std::size_t ticks_at_once = 2048;
-Result<CaseResult> evaluate_parts(TraceParts& recorded, const Subject& subject, PortHost& host,
-                                  const Tolerances& tolerances,
-                                  std::size_t most_ticks = ticks_at_once);
+Result<VectorResult> evaluate_parts(TraceParts& recorded, const Subject& subject, PortHost& host,
+                                    const Tolerances& tolerances,
+                                    std::size_t most_ticks = ticks_at_once);
 
 }  // namespace attest

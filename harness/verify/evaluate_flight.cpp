@@ -9,15 +9,15 @@
 
 #include "harness/compare/compare_rows.hpp"
 #include "harness/golden/reference_flight.hpp"
-#include "harness/host/host_here.hpp"
+#include "harness/host/in_process_host.hpp"
 #include "harness/loop/case_timing.hpp"
 #include "harness/loop/flight.hpp"
 #include "harness/port/builtin.hpp"
-#include "harness/verify/answers.hpp"
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/fixed_step.hpp"
 #include "harness/verify/flight_contradiction.hpp"
 #include "harness/verify/judge.hpp"
+#include "harness/verify/reference_comparison.hpp"
 #include "harness/verify/saved_traces.hpp"
 #include "harness/verify/stopwatch.hpp"
 
@@ -65,7 +65,7 @@ std::string off(const MetricResult& metric) {
 }
 
 void judge_metrics(const Case& the_case, const Flown& flown, const ReferenceFlight& reference,
-                   CaseResult& result, std::vector<std::string>& reasons) {
+                   VectorResult& result, std::vector<std::string>& reasons) {
   for (const Metric& metric : the_case.flight->metrics) {
     const auto known = reference.metrics.find(metric.name);
     const double expected =
@@ -96,10 +96,11 @@ Comparison with_tightest(Comparison loop, const Comparison& answers) {
 
 Result<Comparison> compare_units(const Flown& flown, const std::string& profile,
                                  const Tolerances& tolerances, std::optional<int> fraction_bits) {
-  auto answers = compare_answers(flown.trace, profile, tolerances, fraction_bits);
+  auto answers = compare_with_reference(flown.trace, profile, tolerances, fraction_bits);
   if (!answers) return tl::unexpected(answers.error());
   if (!flown.attitude_trace || flown.attitude_trace->samples.empty()) return answers->comparison;
-  const auto attitude = compare_answers(*flown.attitude_trace, profile, tolerances, fraction_bits);
+  const auto attitude =
+      compare_with_reference(*flown.attitude_trace, profile, tolerances, fraction_bits);
   if (!attitude) return tl::unexpected(attitude.error());
   return both(answers->comparison, attitude->comparison);
 }
@@ -108,7 +109,7 @@ Result<Comparison> compare_units(const Flown& flown, const std::string& profile,
 // up to the horizon. NaN or infinity in an output that is finite in all rows fails at every tick,
 // also beyond the horizon.
 Result<void> judge_ticks(const Case& the_case, const Flown& flown, const ReferenceFlight& reference,
-                         std::optional<int> fraction_bits, CaseResult& result) {
+                         std::optional<int> fraction_bits, VectorResult& result) {
   // The horizon is that of floats. A port in fixed point rounds more, and in flight its rounding
   // changes its later inputs. A port with 22 fraction bits was measured to deviate from the
   // golden's rates by seven times the tolerance of its LSBs. With 30 bits, seven times that
@@ -139,7 +140,7 @@ Result<void> judge_ticks(const Case& the_case, const Flown& flown, const Referen
 
 Result<void> judge_flight(const Case& the_case, const Flown& flown,
                           const ReferenceFlight& reference, std::optional<int> fraction_bits,
-                          CaseResult& result) {
+                          VectorResult& result) {
   auto judged = judge_ticks(the_case, flown, reference, fraction_bits, result);
   if (!judged) return judged;
   std::vector<std::string> reasons;
@@ -165,7 +166,7 @@ namespace {
 
 // Saves the traces of a failed flight, with the reference's outputs for the same inputs.
 void save_flight(const std::filesystem::path& folder, const Trace& flown,
-                 const Tolerances& tolerances, CaseResult& result) {
+                 const Tolerances& tolerances, VectorResult& result) {
   if (!saves_traces(folder, result) || flown.samples.empty()) return;
   const Subject subject{result.profile, module_of(flown.present)};
   Trace want = flown;
@@ -184,16 +185,16 @@ std::optional<PortFault> fault_of(const Course& course, const FlightPlan& plan,
                    fmt::format("{}: the port changed memory that is not its own", contradiction)};
 }
 
-Result<CaseResult> evaluate_with(const Course& course, const FlightPlan& plan,
-                                 const ReferenceFlight& reference, PortHost& host,
-                                 const std::filesystem::path& saved_traces) {
+Result<VectorResult> evaluate_with(const Course& course, const FlightPlan& plan,
+                                   const ReferenceFlight& reference, PortHost& host,
+                                   const std::filesystem::path& saved_traces) {
   const Stopwatch stopwatch;
   const Case& the_case = *course.the_case;
-  CaseResult result = result_for(the_case, plan.configuration);
-  if (declines(host.says(), result)) return result;
+  VectorResult result = result_for(the_case, plan.configuration);
+  if (marks_declined(host.declarations(), result)) return result;
   const auto flown = host.fly(plan);
   if (!flown) return tl::unexpected(flown.error());
-  const auto bits = host.says().fraction_bits;
+  const auto bits = host.declarations().fraction_bits;
   const auto fault = fault_of(course, plan, *flown);
   Result<void> judged;
   if (!fault) {
@@ -216,11 +217,11 @@ Result<CaseResult> evaluate_with(const Course& course, const FlightPlan& plan,
 // For a port with a fixed step (fixed_step.hpp): the case begins one period after zero, and a
 // flight of the reference in this shifted case takes the place of the golden. Errors: in the case
 // as it is, the reference does not agree with the golden.
-Result<CaseResult> evaluate_from_one_period_on(const Course& course, FlightPlan plan,
-                                               const ReferenceFlight& golden, PortHost& host,
-                                               const std::filesystem::path& saved_traces) {
+Result<VectorResult> evaluate_from_one_period_on(const Course& course, FlightPlan plan,
+                                                 const ReferenceFlight& golden, PortHost& host,
+                                                 const std::filesystem::path& saved_traces) {
   const Case& the_case = *course.the_case;
-  HostHere builtin(open_builtin(), {}, course);
+  InProcessHost builtin(open_builtin(), {}, course);
   const auto checked = evaluate_with(course, plan, golden, builtin, {});
   if (!checked) return tl::unexpected(checked.error());
   if (checked->verdict != Verdict::pass) {
@@ -239,31 +240,31 @@ Result<CaseResult> evaluate_from_one_period_on(const Course& course, FlightPlan 
 
 }  // namespace
 
-Result<CaseResult> evaluate_flight(const Case& the_case, const RunConfiguration& configuration,
-                                   const VehicleModel& vehicle_model, const Golden& golden,
-                                   PortHost& host, const std::filesystem::path& saved_traces) {
+Result<VectorResult> evaluate_flight(const Case& the_case, const RunConfiguration& configuration,
+                                     const VehicleModel& vehicle_model, const Golden& golden,
+                                     PortHost& host, const std::filesystem::path& saved_traces) {
   const auto reference = golden.read_flight(configuration, vehicle_model.vehicle());
   if (!reference) return tl::unexpected(reference.error());
   const Course course{&the_case, &vehicle_model};
   const FlightPlan plan{configuration, flight_timing(the_case, configuration.rate)};
-  if (!has_fixed_step(host.says(), the_case)) {
+  if (!has_fixed_step(host.declarations(), the_case)) {
     return evaluate_with(course, plan, *reference, host, saved_traces);
   }
-  CaseResult result = result_for(the_case, configuration);
-  if (has_other_steps(host.says(), the_case, configuration.rate.unit, plan.timing, result))
+  VectorResult result = result_for(the_case, configuration);
+  if (has_other_steps(host.declarations(), the_case, configuration.rate.unit, plan.timing, result))
     return result;
   return evaluate_from_one_period_on(course, plan, *reference, host, saved_traces);
 }
 
-Result<CaseResult> evaluate_timed_flight(const Case& the_case,
-                                         const RunConfiguration& configuration,
-                                         const VehicleModel& vehicle_model,
-                                         const FlightTiming& timing, PortHost& host,
-                                         const std::filesystem::path& saved_traces) {
-  CaseResult result = result_for(the_case, configuration);
-  if (has_other_steps(host.says(), the_case, configuration.rate.unit, timing, result))
+Result<VectorResult> evaluate_timed_flight(const Case& the_case,
+                                           const RunConfiguration& configuration,
+                                           const VehicleModel& vehicle_model,
+                                           const FlightTiming& timing, PortHost& host,
+                                           const std::filesystem::path& saved_traces) {
+  VectorResult result = result_for(the_case, configuration);
+  if (has_other_steps(host.declarations(), the_case, configuration.rate.unit, timing, result))
     return result;
-  const FlightPlan plan{configuration, timing, has_fixed_step(host.says(), the_case)};
+  const FlightPlan plan{configuration, timing, has_fixed_step(host.declarations(), the_case)};
   Case relaxed = plan.from_one_period_on ? the_case.from_one_period_on() : the_case;
   const auto reference = reference_flight(relaxed, configuration, vehicle_model, timing);
   if (!reference) return tl::unexpected(reference.error());

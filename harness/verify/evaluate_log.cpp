@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "harness/golden/recorded.hpp"
-#include "harness/host/host_here.hpp"
+#include "harness/host/in_process_host.hpp"
 #include "harness/port/builtin.hpp"
 #include "harness/port/profiles.hpp"
 #include "harness/verify/judge.hpp"
@@ -190,7 +190,7 @@ class Comparable {
 };
 
 void judge_topics(const std::vector<TopicAgreement>& topics, const LogLimits& limits,
-                  CaseResult& result) {
+                  VectorResult& result) {
   for (const TopicAgreement& topic : topics) {
     const bool is_non_finite = topic.non_finite > 0;  // wrong also if earlier steps are not known
     if (!is_non_finite && (!topic.not_judged.empty() || topic.agrees(limits))) continue;
@@ -221,7 +221,7 @@ class LogJudge {
 
   // Empty if the reference has a fault, for example because it does not have the profile.
   std::optional<std::vector<TopicAgreement>> of_reference(Known most) {
-    HostHere host(open_builtin());
+    InProcessHost host(open_builtin());
     Replayed reference(host, subject_, as_flown_);
     LogAgreement agreement(log_.trace.present, limits_);
     std::optional<PortFault> fault;
@@ -237,7 +237,7 @@ class LogJudge {
 
   // Sets the topics and the ticks, unless the port has a fault.
   std::optional<PortFault> drive(PortHost& port, const Comparable& comparable, LogResult& found) {
-    HostHere host(open_builtin());
+    InProcessHost host(open_builtin());
     Replayed reference(host, subject_, as_flown_), judged(port, subject_, of_port_);
     LogAgreement agreement(log_.trace.present, limits_);
     std::optional<PortFault> fault;
@@ -281,8 +281,8 @@ LogResult evaluate_log(const LoggedUnit& log, const std::string& profile, PortHo
                        const LogLimits& limits, const std::vector<ParameterChange>& parameters,
                        std::size_t most_ticks) {
   LogResult found{result_for(log.trace.source, profile), {}, {}};
-  CaseResult& result = found.result;
-  if (declines(host.says(), result)) return found;
+  VectorResult& result = found.result;
+  if (marks_declined(host.declarations(), result)) return found;
   if (!log.ticks && log.trace.samples.empty()) {
     result.verdict = Verdict::skip;
     result.reason = log.not_judged;

@@ -13,7 +13,7 @@
 namespace attest {
 
 struct LogResult {
-  CaseResult result;  // verdict and reason
+  VectorResult result;  // verdict and reason
   std::vector<TopicAgreement> topics;
   // With the port's outputs; up to the fault, if there was one. Only for a log that is in memory as
   // a whole; else empty.

@@ -10,7 +10,7 @@
 namespace attest {
 namespace {
 
-bool is_unsupported(const Rate& step, const std::string& what, CaseResult& result) {
+bool is_unsupported(const Rate& step, const std::string& what, VectorResult& result) {
   result.verdict = Verdict::unsupported;
   result.reason =
       fmt::format("the port has a fixed step of {} Hz, and this {}", step.to_string(), what);
@@ -50,8 +50,8 @@ std::vector<Nanoseconds> begins_of(const LoopTiming& timing) {
   return begins;
 }
 
-bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
-                     const std::vector<Nanoseconds>& begins, CaseResult& result) {
+bool has_other_steps(const Declarations& port, const Case& the_case, const Rate& rate,
+                     const std::vector<Nanoseconds>& begins, VectorResult& result) {
   const Rate step = *port.fixed_step;
   if (rate != step) return is_unsupported(step, "runs at another rate", result);
   const UnitTiming usual;
@@ -66,24 +66,24 @@ bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rat
 
 }  // namespace
 
-bool has_fixed_step(const PortSays& port, const Case& the_case) {
+bool has_fixed_step(const Declarations& port, const Case& the_case) {
   return has_clock(the_case.module) && port.fixed_step.has_value();
 }
 
-Trace inputs_for(const PortSays& port, const Case& the_case, const Rate& rate) {
+Trace inputs_for(const Declarations& port, const Case& the_case, const Rate& rate) {
   return stimulate(has_fixed_step(port, the_case) ? the_case.from_one_period_on() : the_case, rate);
 }
 
-bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
-                     CaseResult& result) {
+bool has_other_steps(const Declarations& port, const Case& the_case, const Rate& rate,
+                     VectorResult& result) {
   if (!has_fixed_step(port, the_case)) return false;
   if (has_other_steps(port, the_case, rate, unit_ticks(the_case, rate), result)) return true;
   if (is_at_steps(inputs_for(port, the_case, rate), rate, the_case.module)) return false;
   return is_unsupported(rate, "has samples that were taken at other times", result);
 }
 
-bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
-                     const FlightTiming& timing, CaseResult& result) {
+bool has_other_steps(const Declarations& port, const Case& the_case, const Rate& rate,
+                     const FlightTiming& timing, VectorResult& result) {
   if (!has_fixed_step(port, the_case)) return false;
   const bool is_of_cascade = !timing.attitude_unit.empty();
   const Rate step = *port.fixed_step;
@@ -93,8 +93,8 @@ bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rat
   return has_other_steps(port, the_case, rate, begins_of(timing.unit), result);
 }
 
-bool has_other_steps(const PortSays& port, const Trace& recorded, Module module, CaseResult& result,
-                     std::size_t first_tick) {
+bool has_other_steps(const Declarations& port, const Trace& recorded, Module module,
+                     VectorResult& result, std::size_t first_tick) {
   const auto step = port.fixed_step;
   if (!step || !has_clock(module) || is_at_steps(recorded, *step, module, first_tick)) return false;
   return is_unsupported(*step, "was not recorded at its steps from one period after zero on",

@@ -12,7 +12,7 @@
 #pragma once
 
 #include "harness/casefile/case.hpp"
-#include "harness/host/port_says.hpp"
+#include "harness/host/declarations.hpp"
 #include "harness/schedule/loop_timing.hpp"
 #include "harness/verify/verdict.hpp"
 
@@ -20,25 +20,25 @@ namespace attest {
 
 // Whether `the_case` must begin one period after zero for this port (Case::from_one_period_on).
 // False for mixers and battery estimates, which have no clock.
-bool has_fixed_step(const PortSays& port, const Case& the_case);
+bool has_fixed_step(const Declarations& port, const Case& the_case);
 
 // The inputs of a vector for this port: of Case::from_one_period_on() if has_fixed_step().
-Trace inputs_for(const PortSays& port, const Case& the_case, const Rate& rate);
+Trace inputs_for(const Declarations& port, const Case& the_case, const Rate& rate);
 
 // Whether the port has a fixed step that the case does not keep: another rate, ticks that are not
 // exactly periodic, samples taken at other times, or a `start_s` of the case's own. If so, the
 // verdict becomes unsupported, with the reason.
-bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
-                     CaseResult& result);
+bool has_other_steps(const Declarations& port, const Case& the_case, const Rate& rate,
+                     VectorResult& result);
 
 // The same for a flight, whose ticks begin at the times of `timing`. In the cascade both units must
 // keep the step. The times of the samples are not checked.
-bool has_other_steps(const PortSays& port, const Case& the_case, const Rate& rate,
-                     const FlightTiming& timing, CaseResult& result);
+bool has_other_steps(const Declarations& port, const Case& the_case, const Rate& rate,
+                     const FlightTiming& timing, VectorResult& result);
 
 // The same for a recorded trace, or for a part of it that begins at `first_tick`: tick k and the
 // sample of it must be at k + 1 periods.
-bool has_other_steps(const PortSays& port, const Trace& recorded, Module module, CaseResult& result,
-                     std::size_t first_tick = 0);
+bool has_other_steps(const Declarations& port, const Trace& recorded, Module module,
+                     VectorResult& result, std::size_t first_tick = 0);
 
 }  // namespace attest

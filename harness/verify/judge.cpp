@@ -19,24 +19,24 @@ Tolerances tolerances_of(const Case& the_case, Level level, std::optional<int> f
   return tolerances;
 }
 
-bool declines(const PortSays& port, const std::string& group) {
+bool marks_declined(const Declarations& port, const std::string& group) {
   const auto& declined = port.unsupported_groups;
   return std::find(declined.begin(), declined.end(), group) != declined.end();
 }
 
-bool declines(const PortSays& port, CaseResult& result) {
+bool marks_declined(const Declarations& port, VectorResult& result) {
   if (port.is_recorded && result.plant_configuration) {
     result.verdict = Verdict::skip;
     result.reason = "a recorded port does not fly: the inputs of a flight depend on its outputs";
     return true;
   }
-  if (!declines(port, result.group)) return false;
+  if (!marks_declined(port, result.group)) return false;
   result.verdict = Verdict::unsupported;
   result.reason = fmt::format("the port declares that it does not support {}", result.group);
   return true;
 }
 
-void judge(const PortFault& fault, CaseResult& result) {
+void judge(const PortFault& fault, VectorResult& result) {
   result.reason = fault.what;
   switch (fault.kind) {
     case PortFault::Kind::profile:
@@ -93,13 +93,13 @@ bool leaves_values_to_judge(const ChannelSet& not_recorded, const Trace& want) {
   return values.any();
 }
 
-void explain_recording(const Trace& answered, const Trace& want, CaseResult& result) {
+void explain_recording(const Trace& answered, const Trace& want, VectorResult& result) {
   const std::string mistake = misrecording(answered, want);
   if (mistake.empty()) return;
   result.reason += fmt::format("{}{}", result.reason.empty() ? "" : "; ", mistake);
 }
 
-void judge_after(const PortFault& fault, CaseResult& result) {
+void judge_after(const PortFault& fault, VectorResult& result) {
   if (result.verdict != Verdict::pass) {
     result.reason += fmt::format("{}an output was wrong before {}",
                                  result.reason.empty() ? "" : "; ", fault.what);
@@ -110,7 +110,7 @@ void judge_after(const PortFault& fault, CaseResult& result) {
   judge(fault, result);
 }
 
-void judge(const Comparison& comparison, CaseResult& result) {
+void judge(const Comparison& comparison, VectorResult& result) {
   result.ticks = comparison.ticks;
   result.deviating_ticks = comparison.deviating_ticks;
   result.first = comparison.first;

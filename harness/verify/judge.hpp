@@ -5,7 +5,7 @@
 
 #include "harness/casefile/case.hpp"
 #include "harness/compare/compare.hpp"
-#include "harness/host/port_says.hpp"
+#include "harness/host/declarations.hpp"
 #include "harness/loop/unit_driver.hpp"
 #include "harness/verify/verdict.hpp"
 
@@ -19,10 +19,10 @@ Tolerances tolerances_of(const Case& the_case, Level level, std::optional<int> f
 // If the port declares that it does not support the result's group, the verdict becomes
 // unsupported. If the port is recorded and the result is of a flight, the verdict becomes skip.
 // Returns true in both cases.
-bool declines(const PortSays& port, CaseResult& result);
-bool declines(const PortSays& port, const std::string& group);
+bool marks_declined(const Declarations& port, VectorResult& result);
+bool marks_declined(const Declarations& port, const std::string& group);
 
-void judge(const PortFault& fault, CaseResult& result);
+void judge(const PortFault& fault, VectorResult& result);
 
 // Whether the fault is an ATTEST_UNSUPPORTED after the first tick. The ticks before it are judged,
 // because a later ATTEST_UNSUPPORTED does not excuse wrong outputs.
@@ -41,12 +41,12 @@ void fill_in(const ChannelSet& not_recorded, const Trace& want, Trace& answered)
 bool leaves_values_to_judge(const ChannelSet& not_recorded, const Trace& want);
 
 // Adds to the reason the mistake of the recording that would give these outputs (misrecording.hpp).
-void explain_recording(const Trace& answered, const Trace& want, CaseResult& result);
+void explain_recording(const Trace& answered, const Trace& want, VectorResult& result);
 
 // Adds a fault to a result for which the ticks before the fault have been judged. A pass gets the
 // verdict of the fault. Any other verdict stays, and its reason then names the fault too.
-void judge_after(const PortFault& fault, CaseResult& result);
+void judge_after(const PortFault& fault, VectorResult& result);
 
-void judge(const Comparison& comparison, CaseResult& result);
+void judge(const Comparison& comparison, VectorResult& result);
 
 }  // namespace attest

@@ -8,7 +8,7 @@
 
 #include "harness/core/file.hpp"
 #include "harness/golden/recorded.hpp"
-#include "harness/host/host_here.hpp"
+#include "harness/host/in_process_host.hpp"
 #include "harness/port/builtin.hpp"
 #include "harness/trace/provenance.hpp"
 #include "harness/verify/evaluate.hpp"
@@ -47,8 +47,8 @@ Result<void> check_bytes(const fs::path& file, const Provenance& provenance) {
 Result<std::string> trace_difference(const fs::path& file) {
   const auto recorded = read_recorded(file);
   if (!recorded) return tl::unexpected(recorded.error());
-  HostHere reference(open_builtin());
-  const CaseResult result =
+  InProcessHost reference(open_builtin());
+  const VectorResult result =
       evaluate_trace(recorded->trace, recorded->subject, reference, Tolerances(Level::exact));
   if (result.verdict == Verdict::pass) return std::string();
   if (!result.first) return result.reason;

@@ -15,8 +15,9 @@
 namespace attest {
 namespace {
 
-bool can_run(const PortSays& port, const Case& the_case, const RunConfiguration& configuration) {
-  CaseResult ignored;
+bool can_run(const Declarations& port, const Case& the_case,
+             const RunConfiguration& configuration) {
+  VectorResult ignored;
   return !the_case.flight && the_case.instances == Instances::one &&
          !has_other_steps(port, the_case, configuration.rate.unit, ignored);
 }
@@ -62,7 +63,7 @@ Result<std::size_t> write_recorded_vectors(const std::filesystem::path& folder, 
                                            std::optional<Rate> fixed_step) {
   auto manifest = manifest_for(folder, fixed_step);
   if (!manifest) return tl::unexpected(manifest.error());
-  PortSays port;
+  Declarations port;
   port.fixed_step = fixed_step;
   std::size_t count = 0;
   for (const auto& [the_case, configurations] : cases) {
@@ -90,7 +91,7 @@ Result<std::size_t> write_recorded_vectors(const std::filesystem::path& folder, 
 }
 
 Result<RecordedVectors> check_recorded_vectors(const std::filesystem::path& folder,
-                                               const PortSays& port,
+                                               const Declarations& port,
                                                const std::vector<SelectedCase>& cases) {
   const auto manifest = read_manifest(folder);
   if (!manifest) return tl::unexpected(manifest.error());

@@ -8,7 +8,7 @@
 
 #include "harness/casefile/select.hpp"
 #include "harness/core/result.hpp"
-#include "harness/host/port_says.hpp"
+#include "harness/host/declarations.hpp"
 #include "harness/recording/table_file.hpp"
 
 namespace attest {
@@ -33,7 +33,7 @@ struct RecordedVectors {
 // Finds the outputs of the selected vectors. Errors: no vector has outputs; the inputs of a vector
 // with outputs are not those that its case makes now; the manifest cannot be read.
 Result<RecordedVectors> check_recorded_vectors(const std::filesystem::path& folder,
-                                               const PortSays& port,
+                                               const Declarations& port,
                                                const std::vector<SelectedCase>& cases);
 
 }  // namespace attest

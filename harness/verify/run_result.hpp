@@ -55,7 +55,7 @@ struct RunResult {
   std::vector<std::string> port_files;  // that a program named in the handshake
   Limits limits;                        // of the port
   std::string date;                     // of the run, UTC: "2026-03-31"
-  std::vector<CaseResult> results;
+  std::vector<VectorResult> results;
   std::vector<Error> errors;   // of the environment, such as a golden that cannot be read
   bool stopped_early = false;  // vectors were left out, for example after --fail-fast
 

@@ -51,7 +51,7 @@ Result<void> write_traces(const TraceFiles& files, const std::string& label, con
   return write(files.tolerance, allowed, all_columns(allowed));
 }
 
-std::string label_of(const CaseResult& result, Module module) {
+std::string label_of(const VectorResult& result, Module module) {
   const std::string label = result.configuration().label();
   const bool is_second = result.plant_configuration && module == Module::attitude_unit;
   return is_second ? fmt::format("{}.{}", label, name_of(module)) : label;
@@ -59,11 +59,11 @@ std::string label_of(const CaseResult& result, Module module) {
 
 }  // namespace
 
-bool saves_traces(const std::filesystem::path& folder, const CaseResult& result) {
+bool saves_traces(const std::filesystem::path& folder, const VectorResult& result) {
   return !folder.empty() && fails_a_run(result.verdict);
 }
 
-TraceFiles trace_files(const std::filesystem::path& folder, const CaseResult& result,
+TraceFiles trace_files(const std::filesystem::path& folder, const VectorResult& result,
                        Module module) {
   const std::filesystem::path stem = folder / result.case_id() / label_of(result, module);
   const auto file = [&](const char* suffix) { return std::filesystem::path(stem) += suffix; };
@@ -71,7 +71,7 @@ TraceFiles trace_files(const std::filesystem::path& folder, const CaseResult& re
 }
 
 void save_traces(const std::filesystem::path& folder, const Subject& subject,
-                 const JudgedTraces& traces, CaseResult& result) {
+                 const JudgedTraces& traces, VectorResult& result) {
   auto saved = make_below(folder, result.case_id());
   if (saved) {
     saved = write_traces(trace_files(folder, result, subject.module),

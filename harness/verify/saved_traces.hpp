@@ -12,7 +12,7 @@
 namespace attest {
 
 // True if there is a folder, and the result fails.
-bool saves_traces(const std::filesystem::path& folder, const CaseResult& result);
+bool saves_traces(const std::filesystem::path& folder, const VectorResult& result);
 
 // The traces of a failing vector. Both have the inputs that the port was given.
 struct JudgedTraces {
@@ -27,7 +27,7 @@ struct TraceFiles {
   std::filesystem::path got, want;
   std::filesystem::path tolerance;  // has the allowed |got - want| in place of each output
 };
-TraceFiles trace_files(const std::filesystem::path& folder, const CaseResult& result,
+TraceFiles trace_files(const std::filesystem::path& folder, const VectorResult& result,
                        Module module);
 
 // Writes FOLDER/PROFILE/GROUP/NAME/CONFIGURATION.got.csv, .want.csv and .tolerance.csv
@@ -36,6 +36,6 @@ TraceFiles trace_files(const std::filesystem::path& folder, const CaseResult& re
 // file cannot be written, the result's reason says so. Several processes may save vectors of the
 // same case at the same time. REQUIRES: saves_traces(); the folder exists.
 void save_traces(const std::filesystem::path& folder, const Subject& subject,
-                 const JudgedTraces& traces, CaseResult& result);
+                 const JudgedTraces& traces, VectorResult& result);
 
 }  // namespace attest

@@ -54,12 +54,12 @@ std::string RunResult::selection_text() const {
 std::size_t RunResult::count(Verdict verdict) const {
   return static_cast<std::size_t>(
       std::count_if(results.begin(), results.end(),
-                    [verdict](const CaseResult& result) { return result.verdict == verdict; }));
+                    [verdict](const VectorResult& result) { return result.verdict == verdict; }));
 }
 
 bool RunResult::failed() const {
   return std::any_of(results.begin(), results.end(),
-                     [](const CaseResult& result) { return fails_a_run(result.verdict); });
+                     [](const VectorResult& result) { return fails_a_run(result.verdict); });
 }
 
 bool MetricResult::within() const {

@@ -30,7 +30,7 @@ enum class Verdict {
 inline constexpr int verdict_count = 10;
 
 // The reason of a skipped case that is compared at the exact level only, for people.
-// CaseResult::exact_only is set for such a case.
+// VectorResult::exact_only is set for such a case.
 inline constexpr std::string_view exact_level_only =
     "on a threshold of the law: compared at the exact level only";
 
@@ -52,7 +52,7 @@ struct MetricResult {
   bool within() const;
 };
 
-struct CaseResult {
+struct VectorResult {
   std::string profile;  // "px4-v1.5.5"
   std::string group;    // "attitude"
   std::string name;     // "roll_30": with profile and group, the stem in cases/ and golden/

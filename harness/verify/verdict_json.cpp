@@ -141,7 +141,7 @@ Headroom headroom_from(JsonReader reader) {
 
 }  // namespace
 
-nlohmann::json to_json(const CaseResult& result) {
+nlohmann::json to_json(const VectorResult& result) {
   json out = {
       {"id", result.id()},
       {"profile", result.profile},
@@ -169,10 +169,10 @@ nlohmann::json to_json(const CaseResult& result) {
   return out;
 }
 
-Result<CaseResult> case_result_from_json(const nlohmann::json& json) {
+Result<VectorResult> vector_result_from_json(const nlohmann::json& json) {
   std::string error;
   JsonReader reader(json, error);
-  CaseResult out;
+  VectorResult out;
   out.profile = reader.text("profile");
   out.group = reader.text("group");
   out.name = reader.text("name");

@@ -1,4 +1,4 @@
-// A CaseResult as JSON and back: the message of a worker process to the command, and one entry of
+// A VectorResult as JSON and back: the message of a worker process to the command, and one entry of
 // the JSON report.
 //
 //     {"id": "px4-v1.5.5/attitude/roll_30@250hz", "profile": ..., "group": ..., "name": ...,
@@ -25,11 +25,11 @@
 namespace attest {
 
 // Text of the port may be invalid UTF-8, which text_of() and document_of() repair.
-nlohmann::json to_json(const CaseResult& result);
+nlohmann::json to_json(const VectorResult& result);
 
 // The inverse of to_json(). Errors: a discarded value (json_from), a missing or wrong member, an
 // unknown verdict, channel or rate; `exact_only` of another verdict than skip. Unknown and derived
 // members (id, stage, within) are ignored.
-Result<CaseResult> case_result_from_json(const nlohmann::json& json);
+Result<VectorResult> vector_result_from_json(const nlohmann::json& json);
 
 }  // namespace attest

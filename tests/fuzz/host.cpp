@@ -52,7 +52,7 @@ void require_sane(const std::vector<ParameterChange>& changes) {
 void greet(const Arrived& arrived) {
   const auto greeting = read_greeting(arrived);
   if (!is_accepted(greeting) || !is_accepted(*greeting)) return;
-  const PortSays& says = **greeting;
+  const Declarations& says = **greeting;
   require(wrong_in_declared(says.name, says.version, says.unsupported_groups).empty(),
           "printable declarations");
   const int bits = says.fraction_bits.value_or(fewest_fraction_bits);

@@ -48,11 +48,12 @@ PageTable metrics_table(const std::vector<SimulatedFlight>& flights) {
   return table;
 }
 
-PageConclusion page_conclusion(const std::vector<SimulatedFlight>& flights, const PortSays& port) {
+PageConclusion page_conclusion(const std::vector<SimulatedFlight>& flights,
+                               const Declarations& port) {
   const auto failed = std::find_if(
       flights.begin(), flights.end(),
       [](const SimulatedFlight& flight) { return flight.result.verdict != Verdict::pass; });
-  const CaseResult& result = (failed == flights.end() ? flights.front() : *failed).result;
+  const VectorResult& result = (failed == flights.end() ? flights.front() : *failed).result;
   std::string title = flights.front().result.id();
   for (std::size_t i = 1; i < flights.size(); ++i) title += " and on " + plant_of(flights[i]);
   return {result.verdict, std::string(name_of(result.verdict)), std::move(title),
@@ -61,7 +62,7 @@ PageConclusion page_conclusion(const std::vector<SimulatedFlight>& flights, cons
 
 }  // namespace
 
-std::string flight_page(const std::vector<SimulatedFlight>& flights, const PortSays& port) {
+std::string flight_page(const std::vector<SimulatedFlight>& flights, const Declarations& port) {
   PlotPage page;
   page.conclusion = page_conclusion(flights, port);
   page.tables = {metrics_table(flights)};

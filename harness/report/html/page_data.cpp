@@ -49,7 +49,7 @@ struct Reason {
 std::vector<Reason> reasons_of(const RunResult& run) {
   constexpr std::size_t most = 8;
   std::vector<Reason> reasons;
-  for (const CaseResult& result : run.results) {
+  for (const VectorResult& result : run.results) {
     if (!fails_a_run(result.verdict) || result.first) continue;
     const std::string reason = reason_text(result);
     const auto same = std::find_if(reasons.begin(), reasons.end(), [&](const Reason& known) {
@@ -227,7 +227,7 @@ void add_matrices(const RunResult& run, data& page) {
       }));
 }
 
-void add_failure(const CaseResult& result, const RunResult& run, data& row) {
+void add_failure(const VectorResult& result, const RunResult& run, data& row) {
   data failure;
   if (result.first) {
     const Deviation& first = *result.first;
@@ -249,7 +249,7 @@ void add_failure(const CaseResult& result, const RunResult& run, data& row) {
   row.set("failure", failure);
 }
 
-data result_to_data(const CaseResult& result, const RunResult& run) {
+data result_to_data(const VectorResult& result, const RunResult& run) {
   data row;
   set_text(row, "verdict", name_of(result.verdict));
   set_text(row, "group", one_line(result.profile + "/" + result.group));
@@ -280,7 +280,7 @@ std::string filled_page(const Report& report) {
   add_facts(run, page);
   add_verdicts(page);
   add_matrices(run, page);
-  page.set("results", list_of(run.results, [&](const CaseResult& result) {
+  page.set("results", list_of(run.results, [&](const VectorResult& result) {
              return result_to_data(result, run);
            }));
   kainjow::mustache::mustache page_of{std::string(page_template())};

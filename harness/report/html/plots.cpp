@@ -96,7 +96,7 @@ json vector_to_json(const Traces& traces, const Deviation& first) {
 
 }  // namespace
 
-std::vector<const CaseResult*> vectors_to_plot(const RunResult& run, std::size_t most) {
+std::vector<const VectorResult*> vectors_to_plot(const RunResult& run, std::size_t most) {
   struct Candidate {
     std::size_t round;     // number of rates of the same group before it
     std::size_t position;  // in the results
@@ -104,7 +104,7 @@ std::vector<const CaseResult*> vectors_to_plot(const RunResult& run, std::size_t
   std::map<std::pair<std::string, std::string>, std::vector<LoopRate>> seen;
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < run.results.size(); ++i) {
-    const CaseResult& result = run.results[i];
+    const VectorResult& result = run.results[i];
     if (!fails_a_run(result.verdict) || !result.first) continue;
     std::vector<LoopRate>& rates = seen[{result.profile, result.group}];
     if (std::find(rates.begin(), rates.end(), result.rate) != rates.end()) continue;
@@ -116,7 +116,7 @@ std::vector<const CaseResult*> vectors_to_plot(const RunResult& run, std::size_t
   if (candidates.size() > most) candidates.resize(most);
   std::sort(candidates.begin(), candidates.end(),
             [](const Candidate& a, const Candidate& b) { return a.position < b.position; });
-  std::vector<const CaseResult*> chosen;
+  std::vector<const VectorResult*> chosen;
   for (const Candidate& candidate : candidates) {
     chosen.push_back(&run.results[candidate.position]);
   }
@@ -127,7 +127,7 @@ std::string plots_json(const RunResult& run, const std::filesystem::path& folder
                        std::size_t most_bytes) {
   if (folder.empty()) return "{}";
   std::string out = "{";
-  for (const CaseResult* result : vectors_to_plot(run)) {
+  for (const VectorResult* result : vectors_to_plot(run)) {
     const auto traces =
         read_traces(trace_files(folder, *result, channels()[result->first->channel].module));
     if (!traces || traces->got.samples.empty()) continue;

@@ -16,8 +16,8 @@ inline constexpr std::size_t most_plotted_vectors = 100;
 // failing vector at each rate. If these are more than `most`, the first rates of every group are
 // taken before the further ones. A vector without a first deviation (a crash, a metric of a flight)
 // is left out.
-std::vector<const CaseResult*> vectors_to_plot(const RunResult& run,
-                                               std::size_t most = most_plotted_vectors);
+std::vector<const VectorResult*> vectors_to_plot(const RunResult& run,
+                                                 std::size_t most = most_plotted_vectors);
 
 // Reads the traces of vectors_to_plot() in `folder` (saved_traces.hpp). A vector without traces in
 // `folder` is left out, and so is a vector that would make the text longer than `most_bytes`. The

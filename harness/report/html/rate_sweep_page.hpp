@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "harness/casefile/case.hpp"
-#include "harness/host/port_says.hpp"
+#include "harness/host/declarations.hpp"
 #include "harness/measure/rate_sweep.hpp"
 
 namespace attest {
 
 struct RateSweepRun {
   std::string port;  // the value of --port
-  PortSays says;
+  Declarations says;
   Case the_case;
   std::vector<LoopRate> rates;
   std::vector<RateSweepResult> results;  // of the RateSweepJobs, in their order

@@ -275,7 +275,7 @@ std::string log_page(const FlightLog& log, const std::vector<LogResult>& results
                                           100 * limits.most_unexplained)}};
   for (std::size_t i = 0; i < results.size(); ++i) {
     const LoggedUnit& unit = log.units[i];
-    const CaseResult& result = results[i].result;
+    const VectorResult& result = results[i].result;
     const std::string title(info_of(unit.module).title);
     ticks.push_back(fmt::format("{} ticks", unit.trace.samples.size()));
     page.facts.push_back({title, std::string(name_of(result.verdict))});
@@ -293,7 +293,7 @@ std::string log_page(const FlightLog& log, const std::vector<LogResult>& results
   return plot_page(page);
 }
 
-std::string trace_page(const Trace& want, const Trace& got, const CaseResult& result,
+std::string trace_page(const Trace& want, const Trace& got, const VectorResult& result,
                        const std::string& port) {
   PlotPage page;
   page.conclusion = {result.verdict, std::string(name_of(result.verdict)), want.source,

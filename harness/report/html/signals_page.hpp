@@ -29,7 +29,7 @@ std::string log_page(const FlightLog& log, const std::vector<LogResult>& results
 
 // A port compared with a trace: the first and the worst deviation, and a plot of each output of
 // port and trace.
-std::string trace_page(const Trace& want, const Trace& got, const CaseResult& result,
+std::string trace_page(const Trace& want, const Trace& got, const VectorResult& result,
                        const std::string& port);
 
 }  // namespace attest

@@ -27,7 +27,7 @@ std::string heading_of(const StressResult& stress) {
 }
 
 std::vector<PageCell> rate_row(const StressResult& stress) {
-  const CaseResult& result = stress.result;
+  const VectorResult& result = stress.result;
   const DeadlineMisses& misses = stress.misses;
   if (stress.ticks == 0) {
     return {rate_of(stress), {std::string(name_of(result.verdict)), result.verdict}};
@@ -205,7 +205,7 @@ std::string stress_page(const StressRun& run) {
     page.notes.push_back({note, false});
   }
   for (const StressResult& stress : run.results) {
-    const CaseResult& result = stress.result;
+    const VectorResult& result = stress.result;
     if (!result.reason.empty()) {
       page.notes.push_back(
           {fmt::format("{}: {}: {}", heading_of(stress), name_of(result.verdict), result.reason),

@@ -25,7 +25,7 @@ GroupsByRate groups_of(const CorpusTimes& times) {
   GroupsByRate groups;
   for (const VectorTimes& vector : times.vectors) {
     if (!vector.is_timed()) continue;
-    const CaseResult& result = vector.result;
+    const VectorResult& result = vector.result;
     const std::string_view of_module =
         vector.module == Module::mc_att_control ? "" : info_of(vector.module).title;
     const std::string group = fmt::format("{}/{}{}{}", result.profile, result.group,

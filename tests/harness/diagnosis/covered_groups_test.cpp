@@ -5,7 +5,7 @@
 
 #include "controller/faults/fault.hpp"
 #include "harness/golden/recorded.hpp"
-#include "harness/host/host_here.hpp"
+#include "harness/host/in_process_host.hpp"
 #include "harness/port/fault_port.hpp"
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/recorded_check.hpp"
@@ -33,10 +33,10 @@ bool tells_a_mistake_of(const std::string& group, const std::string& profile,
                         const std::vector<Recorded>& recordings) {
   for (const faults::Fault* fault : faults::catalogue()) {
     if (fault->group != group || !fault->is_detectable(profile)) continue;
-    HostHere host(*open_fault(fault->id));
+    InProcessHost host(*open_fault(fault->id));
     for (const Recorded& one : recordings) {
       if (one.subject.profile != profile) continue;
-      const CaseResult result =
+      const VectorResult result =
           evaluate_trace(one.trace, one.subject, host, Tolerances(Level::numeric));
       if (fails_a_run(result.verdict)) return true;
     }

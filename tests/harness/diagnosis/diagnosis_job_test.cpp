@@ -183,8 +183,8 @@ class DiagnosisJobsTest : public testing::Test {
     the_case.duration = duration;
     cases_.push_back({std::move(the_case), {}});
   }
-  CaseResult& add_result(const std::string& name, int hz, Verdict verdict) {
-    CaseResult result;
+  VectorResult& add_result(const std::string& name, int hz, Verdict verdict) {
+    VectorResult result;
     result.profile = level_.profile;
     result.group = level_.group;
     result.name = name;
@@ -218,7 +218,7 @@ class DiagnosisJobsTest : public testing::Test {
     return suite_[0];
   }();
   std::vector<SelectedCase> cases_;
-  std::vector<CaseResult> results_;
+  std::vector<VectorResult> results_;
 };
 
 TEST_F(DiagnosisJobsTest, WhereNothingFailsNothingIsRun) {

@@ -293,7 +293,7 @@ TEST(HostProtocol, NoChangeOfAGreetingGivesAValueOutOfRange) {
       continue;
     }
     if (!*read) continue;
-    const PortSays& says = **read;
+    const Declarations& says = **read;
     EXPECT_EQ(wrong_in_declared(says.name, says.version, says.unsupported_groups), "");
     if (says.fraction_bits) {
       EXPECT_GE(*says.fraction_bits, fewest_fraction_bits) << head;

@@ -228,7 +228,7 @@ TEST(PortProcess, WhatTheStepSaysComesBack) {
 
 TEST(PortProcess, APortIsHeldToWhatItSaid) {
   HostOptions options;
-  options.said = PortSays{"another", "1", {}, {}, {}, ModuleSet(), {}};
+  options.said = Declarations{"another", "1", {}, {}, {}, ModuleSet(), {}};
   const auto host = start_host(options);
   ASSERT_TRUE(host);
   Trace trace = pitching();
@@ -273,10 +273,10 @@ TEST(PortProcess, DeathInTheMiddleOfAnAnswerIsACrash) {
   EXPECT_THAT(fault->what, HasSubstr("exited with status 3"));
 }
 
-TEST(PortSaysTest, EachChangedAnswerOfAPortIsReported) {
-  const PortSays said{"a", "1", {"rates"}, 22, Rate::hz(250), ModuleSet().set(), {}};
+TEST(DeclarationsTest, EachChangedAnswerOfAPortIsReported) {
+  const Declarations said{"a", "1", {"rates"}, 22, Rate::hz(250), ModuleSet().set(), {}};
   EXPECT_EQ(change(said, said), "");
-  std::vector<PortSays> others(7, said);
+  std::vector<Declarations> others(7, said);
   others[0].name = "b";
   others[1].version = "2";
   others[2].unsupported_groups = {"rates", "tpa"};
@@ -284,7 +284,7 @@ TEST(PortSaysTest, EachChangedAnswerOfAPortIsReported) {
   others[4].fraction_bits.reset();
   others[5].fixed_step = Rate::hz(500);
   others[6].modules = only(Module::mc_att_control);
-  for (const PortSays& now : others) EXPECT_NE(change(said, now), "");
+  for (const Declarations& now : others) EXPECT_NE(change(said, now), "");
 }
 
 }  // namespace

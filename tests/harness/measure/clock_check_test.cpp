@@ -43,7 +43,7 @@ TEST(ClockCheck, CountsStepsThatAreMadeTwice) {
 // A host whose process uses some CPU time between two questions.
 class Host final : public PortHost {
  public:
-  const PortSays& says() const override { return says_; }
+  const Declarations& declarations() const override { return declarations_; }
   std::optional<PortFault> drive(const Subject&, Trace&) override { return {}; }
   Result<Flown> fly(const FlightPlan&) override { return Flown{}; }
   Result<StepTimes> time_steps(const Subject&, const Trace&, bool) override { return StepTimes{}; }
@@ -55,7 +55,7 @@ class Host final : public PortHost {
   mutable std::optional<Nanoseconds> used_ = 0ns;
 
  private:
-  PortSays says_;
+  Declarations declarations_;
 };
 
 TEST(ClockCheck, CountsNoMoreCpuTimeThanWallTime) {

@@ -14,7 +14,7 @@ namespace attest {
 class GivenHost final : public PortHost {
  public:
   struct Answers {
-    PortSays says;
+    Declarations says;
     std::function<std::optional<PortFault>(const Subject&, Trace&)> drive;
     std::function<Result<Flown>(const FlightPlan&)> fly;
     std::function<Result<StepTimes>(const Subject&, const Trace&, bool)> time_steps;
@@ -23,7 +23,7 @@ class GivenHost final : public PortHost {
 
   explicit GivenHost(Answers answers) : answers_(std::move(answers)) {}
 
-  const PortSays& says() const override { return answers_.says; }
+  const Declarations& declarations() const override { return answers_.says; }
   std::optional<PortFault> drive(const Subject& subject, Trace& trace) override {
     return answers_.drive(subject, trace);
   }

@@ -66,7 +66,7 @@ class Sweep : public testing::Test {
   StartHost start() {
     return [this](const HostOptions&, const Course&) -> Result<std::unique_ptr<PortHost>> {
       GivenHost::Answers answers;
-      answers.says = says_;
+      answers.says = declarations_;
       answers.fly = [this](const FlightPlan& plan) {
         plans_.push_back(plan);
         return fly_(plan);
@@ -96,7 +96,7 @@ class Sweep : public testing::Test {
   Case case_ = test::hover_case(0.02);
   PlantConfiguration plant_configuration_{"iris", PlantKind::ode};
   std::vector<LoopRate> rates_ = {Rate::hz(250), Rate::hz(500)};
-  PortSays says_;
+  Declarations declarations_;
   std::function<Result<Flown>(const FlightPlan&)> fly_;
   std::vector<FlightPlan> plans_;
 };
@@ -252,7 +252,7 @@ TEST_F(Sweep, AFlightThatCannotBeSetUpIsAnError) {
 }
 
 TEST_F(Sweep, APortThatDeclinesTheGroupIsNotFlown) {
-  says_.unsupported_groups = {"flight"};
+  declarations_.unsupported_groups = {"flight"};
   const auto found = run(0);
   EXPECT_EQ(found->result.verdict, Verdict::unsupported);
   EXPECT_LT(*found->lowest_rate_hz, 0);
@@ -260,7 +260,7 @@ TEST_F(Sweep, APortThatDeclinesTheGroupIsNotFlown) {
 }
 
 TEST_F(Sweep, APortWithAFixedStepFliesAtItsRateOnlyFromOnePeriodOn) {
-  says_.fixed_step = Rate::hz(500);
+  declarations_.fixed_step = Rate::hz(500);
   holds_if([](const FlightPlan& plan) { return delay_of(plan) <= ms(1); });
   EXPECT_EQ(run(0)->result.verdict, Verdict::unsupported);
   EXPECT_EQ(run(1)->result.verdict, Verdict::unsupported);

@@ -57,7 +57,7 @@ class Simulate : public testing::Test {
     };
   }
 
-  Result<CaseResult> simulated() {
+  Result<VectorResult> simulated() {
     GivenHost host(answers_);
     auto flight = simulate_flight(case_, plan_, host);
     if (!flight) return tl::unexpected(flight.error());

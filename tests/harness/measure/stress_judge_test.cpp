@@ -39,13 +39,13 @@ class StressJudge : public testing::Test {
     stress_.ticks = stress_.deadlines = 10'000;
   }
 
-  CaseResult outputs() {
-    CaseResult result;
+  VectorResult outputs() {
+    VectorResult result;
     judge_outputs(task_.the_case, Module::mc_att_control, flight_.unit, std::nullopt, result);
     return result;
   }
 
-  CaseResult timing() {
+  VectorResult timing() {
     judge_timing(budget_, stress_);
     return stress_.result;
   }
@@ -64,7 +64,7 @@ class StressJudge : public testing::Test {
 };
 
 TEST_F(StressJudge, OutputsThatAgreePass) {
-  const CaseResult result = outputs();
+  const VectorResult result = outputs();
   EXPECT_EQ(result.verdict, Verdict::pass) << result.reason;
   EXPECT_EQ(result.ticks, 100u);
 }
@@ -84,7 +84,7 @@ TEST_F(StressJudge, AThreadThatUsedMoreThanItsStepsHasAWrongClock) {
 
 TEST_F(StressJudge, OutputsThatDeviateFail) {
   deviate_from(10);
-  const CaseResult result = outputs();
+  const VectorResult result = outputs();
   EXPECT_EQ(result.verdict, Verdict::fail);
   EXPECT_EQ(result.first->tick, 10u);
 }
@@ -96,7 +96,7 @@ TEST_F(StressJudge, OutputsAfterADecisionAtItsThresholdAreNotJudged) {
   }
   const auto samples = flight_.unit.samples;
   deviate_from(70);
-  const CaseResult after = outputs();
+  const VectorResult after = outputs();
   EXPECT_EQ(after.verdict, Verdict::skip);
   EXPECT_THAT(after.reason, HasSubstr("too near to a decision (thrust gate)"));
   flight_.unit.samples = samples;
@@ -113,7 +113,7 @@ TEST_F(StressJudge, OutputsThatAreNotFiniteFailAtAThresholdToo) {
 TEST_F(StressJudge, OutputsThatWereNotKeptAreNotJudged) {
   flight_.unit.samples.resize(60);
   const auto samples = flight_.unit.samples;
-  const CaseResult some = outputs();
+  const VectorResult some = outputs();
   EXPECT_EQ(some.verdict, Verdict::skip);
   EXPECT_THAT(some.reason, HasSubstr("the first 60 of 100 ticks only"));
   flight_.unit.samples = samples;
@@ -125,7 +125,7 @@ TEST_F(StressJudge, OutputsThatWereNotKeptAreNotJudged) {
 
 TEST_F(StressJudge, AFlightThatTheReferenceKeepsFails) {
   flight_.plant.divergence = Divergence{ms(300), "it fell"};
-  CaseResult result;
+  VectorResult result;
   add_skip(result, "outputs not judged");
   judge_flight_end(task_, flight_, result);
   EXPECT_EQ(result.verdict, Verdict::fail);
@@ -138,7 +138,7 @@ TEST_F(StressJudge, AFlightThatTheReferenceKeepsFails) {
 TEST_F(StressJudge, AFlightThatTheReferenceLosesTooIsNotJudged) {
   task_.the_case.flight->start.rate_rad_s = {200, 0, 0};  // above what a plant can have
   flight_.plant.divergence = Divergence{ms(300), "it fell"};
-  CaseResult result;
+  VectorResult result;
   add_skip(result, "outputs not judged");
   judge_flight_end(task_, flight_, result);
   EXPECT_EQ(result.verdict, Verdict::skip);
@@ -147,7 +147,7 @@ TEST_F(StressJudge, AFlightThatTheReferenceLosesTooIsNotJudged) {
 
 TEST_F(StressJudge, AFlightThatEndsWithRightOutputsIsNotJudged) {
   flight_.plant.divergence = Divergence{ms(300), "it fell"};
-  CaseResult result = outputs();
+  VectorResult result = outputs();
   judge_flight_end(task_, flight_, result);
   EXPECT_EQ(result.verdict, Verdict::skip);
 }

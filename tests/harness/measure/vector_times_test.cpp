@@ -61,14 +61,14 @@ class TimeCorpus : public testing::Test {
     host.start = [this](const HostOptions&, const Course&) { return start(); };
     host.stop = [this] { return stops_after_ && results_.size() == *stops_after_; };
     return time_corpus(cases, options_, host,
-                       [this](const CaseResult& result) { results_.push_back(result); });
+                       [this](const VectorResult& result) { results_.push_back(result); });
   }
 
   Result<std::unique_ptr<PortHost>> start() {
     ++hosts_;
     is_spent_ = false;
     GivenHost::Answers answers;
-    answers.says = says_;
+    answers.says = declarations_;
     answers.is_spent = [this] { return is_spent_; };
     answers.time_steps = [this](const Subject& subject, const Trace& inputs, bool with_stack) {
       Question question{subject, {}, with_stack};
@@ -88,13 +88,13 @@ class TimeCorpus : public testing::Test {
   }
 
   TimeOptions options_ = {.repeats = 1, .budget_us = {}, .stack = false, .worst = {}};
-  PortSays says_;
+  Declarations declarations_;
   std::vector<Result<StepTimes>> answers_;
   std::optional<std::size_t> stops_after_;
   bool is_spent_ = false;
   int hosts_ = 0;
   std::vector<Question> questions_;
-  std::vector<CaseResult> results_;
+  std::vector<VectorResult> results_;
 };
 
 TEST_F(TimeCorpus, OfEachStepTheQuickestRepeatCounts) {
@@ -208,7 +208,7 @@ TEST_F(TimeCorpus, AVectorOfAPortThatGoesWrongHasNoTimes) {
 }
 
 TEST_F(TimeCorpus, APortThatDeclinesTheGroupIsNotTimed) {
-  says_.unsupported_groups = {"tests"};
+  declarations_.unsupported_groups = {"tests"};
   const auto times = timed({open_loop("level")});
   ASSERT_TRUE(times) << times.error().to_string();
   EXPECT_EQ(times->vectors[0].result.verdict, Verdict::unsupported);
@@ -235,7 +235,7 @@ TEST_F(TimeCorpus, NoMemoryForTheStackIsAnError) {
 TEST(TimeCorpusWithoutAHost, APortThatCannotBeOpenedIsAnError) {
   HostOptions host;
   host.port = "lib:/does/not/exist.so";
-  EXPECT_FALSE(time_corpus({open_loop("level")}, {}, host, [](const CaseResult&) {}));
+  EXPECT_FALSE(time_corpus({open_loop("level")}, {}, host, [](const VectorResult&) {}));
 }
 
 TEST(VectorTimesTest, TheSlowestTickIsThatOfTheLongestStep) {

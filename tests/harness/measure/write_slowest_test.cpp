@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/casefile/stimulus.hpp"
-#include "harness/host/host_here.hpp"
+#include "harness/host/in_process_host.hpp"
 #include "harness/measure/vector_times.hpp"
 #include "harness/trace/csv.hpp"
 #include "harness/verify/evaluate.hpp"
@@ -88,7 +88,7 @@ TEST_F(WriteSlowest, TheParametersThatChangeAtTheSlowestStepAreIncluded) {
 
 TEST_F(WriteSlowest, WritesWhatThePortAnswers) {
   Trace answered = stimulate(moving_.the_case, Rate::hz(250));
-  ASSERT_FALSE((*open_host_here("builtin"))->drive({"px4-v1.5.5"}, answered));
+  ASSERT_FALSE((*open_in_process_host("builtin"))->drive({"px4-v1.5.5"}, answered));
   const Trace trace = written();
   ASSERT_EQ(trace.samples.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) {

@@ -13,8 +13,8 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-CaseResult failing(Deviation first) {
-  CaseResult result = passed("attitude", "roll_30", Rate::hz(250));
+VectorResult failing(Deviation first) {
+  VectorResult result = passed("attitude", "roll_30", Rate::hz(250));
   result.verdict = Verdict::fail;
   result.reason = "outputs differ";
   result.deviating_ticks = 2;
@@ -23,7 +23,7 @@ CaseResult failing(Deviation first) {
 }
 
 TEST(FailureText, TellsWhatIsWrongWhereAndHowToRunItAgain) {
-  const CaseResult result =
+  const VectorResult result =
       failing(deviation("out/vehicle_rates_setpoint.roll", 17, -1.5F, -1, 0.125));
   const RunResult run = passing_run();
   RunResult numeric = run;
@@ -46,7 +46,7 @@ TEST(FailureText, TellsWhatIsWrongWhereAndHowToRunItAgain) {
 }
 
 TEST(FailureText, TheShortestDecimalIsThatOfFloat32) {
-  const CaseResult result =
+  const VectorResult result =
       failing(deviation("out/vehicle_rates_setpoint.roll", 0, 0.1F, 0.10000001F, 0));
   const std::string text = failure_text(result, passing_run());
   EXPECT_THAT(text, HasSubstr("got   0.1         0x3dcccccd\n"));
@@ -55,14 +55,14 @@ TEST(FailureText, TheShortestDecimalIsThatOfFloat32) {
 }
 
 TEST(FailureText, ZerosOfBothSignsAreDistinguished) {
-  const CaseResult result =
+  const VectorResult result =
       failing(deviation("out/vehicle_rates_setpoint.roll", 0, -0.0F, 0.0F, 0));
   const std::string text = failure_text(result, passing_run());
   EXPECT_THAT(text, HasSubstr("got   -0  0x80000000\n    want  0   0x00000000\n"));
 }
 
 TEST(FailureText, AFlagHasNeitherBitsNorADistance) {
-  const CaseResult result = failing(deviation("out/actuator_controls_0.published", 3, 0, 1, 0));
+  const VectorResult result = failing(deviation("out/actuator_controls_0.published", 3, 0, 1, 0));
   const std::string text = failure_text(result, passing_run());
   EXPECT_THAT(text, HasSubstr("in out/actuator_controls_0.published\n    got   0\n    want  1\n"));
   EXPECT_THAT(text, Not(HasSubstr("off by")));
@@ -92,7 +92,7 @@ TEST(FailureText, NanIsSaidInWordsNotAsADifference) {
 }
 
 TEST(FailureText, ACrashSaysNothingAboutTicks) {
-  CaseResult result = passed("attitude", "roll_30", Rate::hz(1000, 3));
+  VectorResult result = passed("attitude", "roll_30", Rate::hz(1000, 3));
   result.verdict = Verdict::crash;
   result.ticks = 0;
   EXPECT_EQ(failure_text(result, passing_run()),
@@ -105,7 +105,7 @@ TEST(FailureText, ACrashSaysNothingAboutTicks) {
 }
 
 TEST(FailureText, WordsOfAPortStayOnTheirLine) {
-  CaseResult result = passed("attitude", "roll_30", Rate::hz(250));
+  VectorResult result = passed("attitude", "roll_30", Rate::hz(250));
   result.verdict = Verdict::protocol;
   result.reason = "line one\nPASS all is well\x1b[2J";
   EXPECT_THAT(failure_text(result, passing_run()),
@@ -113,7 +113,7 @@ TEST(FailureText, WordsOfAPortStayOnTheirLine) {
 }
 
 TEST(FindingText, IsTheDifferenceWithoutTheCase) {
-  const CaseResult result = failing(deviation("out/actuator_controls_0.published", 3, 0, 1, 0));
+  const VectorResult result = failing(deviation("out/actuator_controls_0.published", 3, 0, 1, 0));
   EXPECT_EQ(
       finding_text(result, Level::numeric),
       "  first at tick 3, timestamp 12000 us, in out/actuator_controls_0.published\n"
@@ -133,7 +133,7 @@ TEST(FailureHeadline, IsOneLineWithTheFirstDeviation) {
 
 TEST(FailureHeadline, SpeaksForEveryVerdictWithoutAReason) {
   for (int i = 0; i < verdict_count; ++i) {
-    CaseResult result = passed("attitude", "roll_30", Rate::hz(250));
+    VectorResult result = passed("attitude", "roll_30", Rate::hz(250));
     result.verdict = static_cast<Verdict>(i);
     EXPECT_GE(failure_headline(result).size(), 7U) << name_of(result.verdict);
   }

@@ -19,7 +19,7 @@ TEST(JsonReport, IsTheReviewedOne) {
 
 TEST(JsonReport, DoesNotDependOnTimes) {
   RunResult slow = sample_run();
-  for (CaseResult& result : slow.results) result.elapsed_s += 1;
+  for (VectorResult& result : slow.results) result.elapsed_s += 1;
   EXPECT_EQ(json_report(slow), json_report(sample_run()));
   EXPECT_THAT(json_report(slow), testing::Not(testing::HasSubstr("elapsed")));
 }

@@ -106,7 +106,7 @@ TEST(JunitReport, TheContentIsTheFailureText) {
   const RunResult run = sample_run();
   const pugi::xml_document document = parsed(run);
   std::size_t compared = 0;
-  for (const CaseResult& result : run.results) {
+  for (const VectorResult& result : run.results) {
     if (!fails_a_run(result.verdict)) continue;
     const std::string name = result.name + "@" + result.configuration().label();
     const pugi::xml_node node = testcase(document, name.c_str()).first_child();

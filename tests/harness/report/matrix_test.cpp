@@ -31,7 +31,7 @@ TEST(Matrix, AVectorThatWasNotJudgedDoesNotHideOneThatPassed) {
   RunResult run = passing_run();
   run.results.front().verdict = Verdict::skip;
   EXPECT_EQ(matrix_of(run).rows[0].cells[0].worst, Verdict::pass);
-  for (CaseResult& result : run.results) result.verdict = Verdict::skip;
+  for (VectorResult& result : run.results) result.verdict = Verdict::skip;
   EXPECT_EQ(matrix_of(run).rows[0].cells[0].worst, Verdict::skip);
 }
 

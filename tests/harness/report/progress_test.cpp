@@ -31,7 +31,7 @@ class ProgressTest : public testing::Test {
 
   std::FILE* stream_ = std::tmpfile();
   Progress::Clock::time_point start_{};
-  CaseResult result_ = passed("attitude", "roll_30", Rate::hz(250));
+  VectorResult result_ = passed("attitude", "roll_30", Rate::hz(250));
 };
 
 TEST_F(ProgressTest, IsSilentUnlessVisible) {

@@ -9,37 +9,37 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-CaseResult result(Verdict verdict, const std::string& group, const std::string& name, LoopRate rate,
-                  const std::string& reason) {
-  CaseResult out = passed(group, name, rate);
+VectorResult result(Verdict verdict, const std::string& group, const std::string& name,
+                    LoopRate rate, const std::string& reason) {
+  VectorResult out = passed(group, name, rate);
   out.verdict = verdict;
   out.reason = reason;
   out.tightest.reset();
   return out;
 }
 
-CaseResult failing(const std::string& group, const std::string& name, LoopRate rate,
-                   Deviation first, std::size_t deviating_ticks) {
-  CaseResult out = result(Verdict::fail, group, name, rate, "");
+VectorResult failing(const std::string& group, const std::string& name, LoopRate rate,
+                     Deviation first, std::size_t deviating_ticks) {
+  VectorResult out = result(Verdict::fail, group, name, rate, "");
   out.first = first;
   out.deviating_ticks = deviating_ticks;
   return out;
 }
 
-CaseResult died(Verdict verdict, const std::string& name, LoopRate rate,
-                const std::string& reason) {
-  CaseResult out = result(verdict, "robustness", name, rate, reason);
+VectorResult died(Verdict verdict, const std::string& name, LoopRate rate,
+                  const std::string& reason) {
+  VectorResult out = result(verdict, "robustness", name, rate, reason);
   out.ticks = 0;
   return out;
 }
 
-CaseResult with_headroom(CaseResult out, const char* channel, double ratio, std::size_t tick) {
+VectorResult with_headroom(VectorResult out, const char* channel, double ratio, std::size_t tick) {
   out.tightest = Headroom{ratio, tick, *find_channel(Module::mc_att_control, channel)};
   return out;
 }
 
 // A sign error in the yaw law: the same case fails in the same way at three rates.
-void add_attitude(std::vector<CaseResult>& results) {
+void add_attitude(std::vector<VectorResult>& results) {
   const char* yaw = "out/vehicle_rates_setpoint.yaw";
   const Rate slow = Rate::hz(100);
   const Rate fast = Rate::hz(250);
@@ -54,13 +54,13 @@ void add_attitude(std::vector<CaseResult>& results) {
     results.push_back(
         failing("attitude", "yaw_step", rate, deviation(yaw, 17, -1.5F, 0.3F, 2e-4), 483));
   }
-  CaseResult nan_control = result(Verdict::non_finite, "attitude", "zero_thrust", fast, "");
+  VectorResult nan_control = result(Verdict::non_finite, "attitude", "zero_thrust", fast, "");
   nan_control.first = deviation("out/actuator_controls_0.control[1]", 0, nan, -0.0625F, 1e-4);
   nan_control.deviating_ticks = 1;
   results.push_back(nan_control);
 }
 
-void add_mixed(std::vector<CaseResult>& results) {
+void add_mixed(std::vector<VectorResult>& results) {
   const Rate rate = Rate::hz(250);
   results.push_back(failing(
       "mixed", "a_case_whose_name_is_as_long_as_names_of_cases_get_when_they_say_all_they_check",
@@ -76,7 +76,7 @@ void add_mixed(std::vector<CaseResult>& results) {
                            "decides on a threshold: exact level only"));
   results.push_back(result(Verdict::skip, "mixed", "on_threshold", Rate::hz(1000, 3),
                            "decides on a threshold: exact level only"));
-  CaseResult expected =
+  VectorResult expected =
       result(Verdict::xfail, "mixed", "yaw_freeze", rate, "known: see <issue 12> & \"friends\"");
   expected.first = deviation("out/actuator_controls_0.control[2]", 9, 0.25F, 0.125F, 1e-4);
   expected.deviating_ticks = 9;
@@ -84,7 +84,7 @@ void add_mixed(std::vector<CaseResult>& results) {
   results.push_back(result(Verdict::xpass, "mixed", "yaw_limit", rate, ""));
 }
 
-void add_robustness(std::vector<CaseResult>& results) {
+void add_robustness(std::vector<VectorResult>& results) {
   const Rate rate = Rate::hz(3000);
   results.push_back(died(Verdict::crash, "nan_input", rate,
                          "killed by signal 11 (SIGSEGV); last words: </failure>]]><script>alert(1)"
@@ -93,16 +93,17 @@ void add_robustness(std::vector<CaseResult>& results) {
   results.push_back(died(Verdict::protocol, "denormals", rate, "step() returned 7"));
 }
 
-void add_flights(std::vector<CaseResult>& results) {
+void add_flights(std::vector<VectorResult>& results) {
   const double infinity = std::numeric_limits<double>::infinity();
-  CaseResult lost = failing("flight", "hover", Rate::hz(250),
-                            deviation("out/vehicle_rates_setpoint.roll", 20, -1.5F, 0.3F, 2e-4), 3);
+  VectorResult lost =
+      failing("flight", "hover", Rate::hz(250),
+              deviation("out/vehicle_rates_setpoint.roll", 20, -1.5F, 0.3F, 2e-4), 3);
   lost.plant_configuration = PlantConfiguration{"iris", PlantKind::mujoco};
   lost.ticks = 40;
   lost.reason = "the flight ended at 1.918 s (tick 480): the body rate is 80 rad/s, beyond 80";
   results.push_back(lost);
-  CaseResult slow = result(Verdict::fail, "flight", "hover", Rate::hz(250),
-                           "metric levels: settling_time_s is inf, above 2");
+  VectorResult slow = result(Verdict::fail, "flight", "hover", Rate::hz(250),
+                             "metric levels: settling_time_s is inf, above 2");
   slow.plant_configuration = PlantConfiguration{"hexa", PlantKind::ode};
   slow.metrics = {{"levels", Measure::settling_time_s, infinity, 0.5, 0.05, -infinity, 2},
                   {"rolls", Measure::peak_rate_rad_s, 6.1, 6, 0.3, 5, 9}};
@@ -111,8 +112,8 @@ void add_flights(std::vector<CaseResult>& results) {
 
 }  // namespace
 
-CaseResult passed(const std::string& group, const std::string& name, LoopRate rate) {
-  CaseResult out;
+VectorResult passed(const std::string& group, const std::string& name, LoopRate rate) {
+  VectorResult out;
   out.profile = "px4-v1.5.5";
   out.group = group;
   out.name = name;
@@ -159,7 +160,7 @@ RunResult sample_run() {
   add_mixed(run.results);
   add_robustness(run.results);
   add_flights(run.results);
-  for (const CaseResult& result : run.results) {
+  for (const VectorResult& result : run.results) {
     run.case_files[result.case_id()] = "cases/" + result.case_id() + ".toml";
   }
   run.golden_folder = "golden";

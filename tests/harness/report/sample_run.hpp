@@ -15,7 +15,7 @@ RunResult sample_run();
 RunResult passing_run();
 
 // A plain pass.
-CaseResult passed(const std::string& group, const std::string& name, LoopRate rate);
+VectorResult passed(const std::string& group, const std::string& name, LoopRate rate);
 
 // The first value of `channel` that differs. The ulp are those of float32 where both are finite.
 Deviation deviation(const char* channel, std::size_t tick, float got, float want, double tolerance);

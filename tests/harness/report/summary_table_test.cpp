@@ -11,8 +11,8 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-CaseResult with(Verdict verdict, const std::string& group, Rate rate) {
-  CaseResult result = passed(group, "a", rate);
+VectorResult with(Verdict verdict, const std::string& group, Rate rate) {
+  VectorResult result = passed(group, "a", rate);
   result.verdict = verdict;
   return result;
 }

@@ -82,7 +82,7 @@ TEST(Summary, EqualErrorsAreShownOnceAndAtMostTwenty) {
 
 TEST(Summary, NothingThatPassedIsNoPass) {
   RunResult run = passing_run();
-  for (CaseResult& result : run.results) result.verdict = Verdict::unsupported;
+  for (VectorResult& result : run.results) result.verdict = Verdict::unsupported;
   EXPECT_THAT(summary(run), HasSubstr("\nNONE 0 of 6 vectors conform, 6 unsupported"));
   run.results[0].verdict = Verdict::xfail;
   EXPECT_THAT(summary(run), HasSubstr("\nNONE 0 of 6 vectors conform, 5 unsupported, 1 xfail"));
@@ -92,7 +92,7 @@ TEST(Summary, NothingThatPassedIsNoPass) {
 
 TEST(Summary, ACaseThatFailsEquallyAtSeveralRatesIsShownOnce) {
   RunResult run = passing_run();
-  for (CaseResult& result : run.results) result.verdict = Verdict::fail;
+  for (VectorResult& result : run.results) result.verdict = Verdict::fail;
   run.results[1].verdict = Verdict::crash;
   const std::string text = render_summary(run, wall_s, {}, {}, Failures::all);
   EXPECT_THAT(text, HasSubstr("roll_30@50hz\n"));
@@ -109,7 +109,7 @@ TEST(Summary, ShowsTheFirstFailingCaseOfEachGroup) {
   for (int i = 0; i < 22; ++i) {
     for (const char* name : {"one", "two"}) {
       for (const LoopRate& rate : run.rates) {
-        CaseResult result = passed(fmt::format("group_{:02}", i), name, rate);
+        VectorResult result = passed(fmt::format("group_{:02}", i), name, rate);
         result.verdict = Verdict::timeout;
         run.results.push_back(result);
       }
@@ -135,7 +135,7 @@ TEST(Summary, CountsTheStagesThatDifferFirst) {
 
 TEST(Summary, ReasonsOfWhatIsCountedApartAreAggregated) {
   RunResult run = passing_run();
-  for (CaseResult& result : run.results) {
+  for (VectorResult& result : run.results) {
     result.verdict = Verdict::skip;
     result.reason = "no profile";
   }
@@ -196,7 +196,7 @@ TEST(Colour, AFileHasNeitherColourNorWidth) {
 // A port that does not support a profile has only skips there.
 TEST(Summary, NamesTheProfilesThatRan) {
   RunResult run = passing_run();
-  CaseResult skipped = run.results.front();
+  VectorResult skipped = run.results.front();
   skipped.profile = "px4-v1.3.4";
   skipped.verdict = Verdict::skip;
   run.results.push_back(skipped);

@@ -13,9 +13,9 @@ using testing::IsEmpty;
 
 const char* const the_profile = "px4-v1.5.5";
 
-CaseResult result_of(const std::string& group, const LoopRate& rate,
-                     Verdict verdict = Verdict::pass) {
-  CaseResult result;
+VectorResult result_of(const std::string& group, const LoopRate& rate,
+                       Verdict verdict = Verdict::pass) {
+  VectorResult result;
   result.profile = the_profile;
   result.group = group;
   result.name = "a";
@@ -62,13 +62,14 @@ TEST(Claim, AnotherSuiteIsCustom) {
 
 TEST(Claim, WhatWasNotRunIsMissing) {
   RunResult run = complete_run({"attitude", "modes", "tpa"});
-  std::erase_if(run.results, [](const CaseResult& result) { return result.group == "modes"; });
+  std::erase_if(run.results, [](const VectorResult& result) { return result.group == "modes"; });
   run.selection = "--group attitude --group tpa";
   EXPECT_THAT(only_claim(run).missing, ElementsAre("only --group attitude --group tpa",
                                                    "no vector of modes", "2 vectors not run"));
   run = complete_run({"attitude", "tpa"});
   run.rates = {Rate::hz(250)};
-  std::erase_if(run.results, [](const CaseResult& result) { return result.rate == Rate::hz(100); });
+  std::erase_if(run.results,
+                [](const VectorResult& result) { return result.rate == Rate::hz(100); });
   EXPECT_THAT(only_claim(run).missing, ElementsAre("no vector at 100 Hz", "2 vectors not run"));
   EXPECT_TRUE(only_claim(run).has_all_groups) << "at the rates of the run";
 }
@@ -116,7 +117,7 @@ TEST(Claim, TheReasonDoesNotExcuseASkip) {
 
 TEST(Claim, AGroupOfWhichNoOutputWasComparedIsMissing) {
   RunResult run = complete_run({"attitude", "tpa"});
-  for (CaseResult& result : run.results) {
+  for (VectorResult& result : run.results) {
     if (result.group != "tpa") continue;
     result.verdict = Verdict::skip;
     result.exact_only = true;
@@ -194,7 +195,7 @@ TEST(Claim, ARunThatEndedEarlyOrHadErrorsHasNoStanding) {
 
 TEST(Claim, ManyGroupsAreCounted) {
   RunResult run = complete_run({"attitude", "modes", "rates", "tailsitter", "timing", "tpa"});
-  std::erase_if(run.results, [](const CaseResult& result) { return result.group != "tpa"; });
+  std::erase_if(run.results, [](const VectorResult& result) { return result.group != "tpa"; });
   EXPECT_THAT(only_claim(run).missing, ElementsAre("no vector of 5 groups", "10 vectors not run"));
 }
 

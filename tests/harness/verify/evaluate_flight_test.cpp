@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/casefile/parse.hpp"
-#include "harness/host/host_here.hpp"
+#include "harness/host/in_process_host.hpp"
 #include "harness/loop/case_timing.hpp"
 #include "harness/plant/vehicle_models.hpp"
 #include "harness/port/builtin.hpp"
@@ -25,10 +25,10 @@ class ChangedFlight final : public PortHost {
 
   ChangedFlight(const Course& course, Change change)
       : reference_(open_builtin(), {}, course), change_(std::move(change)) {
-    says_.name = "changed";
+    declarations_.name = "changed";
   }
 
-  const PortSays& says() const override { return says_; }
+  const Declarations& declarations() const override { return declarations_; }
   Result<Flown> fly(const FlightPlan& plan) override {
     auto flown = reference_.fly(plan);
     if (flown) change_(flown->trace);
@@ -40,10 +40,10 @@ class ChangedFlight final : public PortHost {
   }
   bool supports(const std::string&) override { return true; }
 
-  PortSays says_;
+  Declarations declarations_;
 
  private:
-  HostHere reference_;
+  InProcessHost reference_;
   Change change_;
 };
 
@@ -59,17 +59,17 @@ class EvaluateFlight : public testing::Test {
     metric_.measure = Measure::peak_rate_rad_s;
   }
 
-  CaseResult result_of(const ChangedFlight::Change& change, std::optional<int> bits = {}) {
+  VectorResult result_of(const ChangedFlight::Change& change, std::optional<int> bits = {}) {
     case_.flight->metrics = {metric_};
     ChangedFlight host({&case_, iris_.get()}, change);
-    host.says_.fraction_bits = bits;
+    host.declarations_.fraction_bits = bits;
     auto result =
         evaluate_timed_flight(case_, at_50, *iris_, case_timing(case_, at_50.rate.unit), host);
     EXPECT_TRUE(result) << result.error().to_string();
-    return result ? *std::move(result) : CaseResult{};
+    return result ? *std::move(result) : VectorResult{};
   }
   // With body rates larger by that factor from a tick on.
-  CaseResult with_rates(float factor, std::size_t from = 0) {
+  VectorResult with_rates(float factor, std::size_t from = 0) {
     return result_of([=](Trace& flown) {
       for (std::size_t tick = from; tick < flown.plant.size(); ++tick) {
         for (float& rate : flown.plant[tick].rate_rad_s) rate *= factor;
@@ -87,7 +87,7 @@ TEST_F(EvaluateFlight, AMetricMayBeOffByTheLargerOfItsTolerances) {
   ASSERT_GT(reference(), 2);
   EXPECT_EQ(with_rates(1.04f).verdict, Verdict::pass);
   EXPECT_EQ(with_rates(0.96f).verdict, Verdict::pass);
-  const CaseResult off = with_rates(1.06f);
+  const VectorResult off = with_rates(1.06f);
   EXPECT_EQ(off.verdict, Verdict::fail);
   EXPECT_THAT(off.reason, HasSubstr("metric turns: peak_rate_rad_s is"));
   EXPECT_EQ(with_rates(0.94f).verdict, Verdict::fail);
@@ -118,7 +118,7 @@ TEST_F(EvaluateFlight, AtRecordedTimesABoundThatTheReferenceKeepsBindsAPort) {
 }
 
 TEST_F(EvaluateFlight, AMissedMetricDoesNotHideThatAnOutputIsNoNumber) {
-  const CaseResult result = result_of([](Trace& flown) {
+  const VectorResult result = result_of([](Trace& flown) {
     flown.samples[40].out.vehicle_rates_setpoint.roll = std::numeric_limits<float>::quiet_NaN();
     for (PlantSample& sample : flown.plant) sample.rate_rad_s = {9, 9, 9};
   });
@@ -131,7 +131,7 @@ TEST_F(EvaluateFlight, AMissedMetricDoesNotHideThatAnOutputIsNoNumber) {
 TEST_F(EvaluateFlight, APortInFixedPointIsHeldToTheGoldenFrom30BitsOn) {
   const auto other_rate = [](Trace& flown) {
     flown.samples[10].in.control_state.roll_rate += 0.01f;
-    HostHere law(open_builtin());
+    InProcessHost law(open_builtin());
     EXPECT_FALSE(law.drive({"px4-v1.5.5"}, flown));
   };
   EXPECT_EQ(result_of(other_rate).verdict, Verdict::fail);
@@ -140,7 +140,7 @@ TEST_F(EvaluateFlight, APortInFixedPointIsHeldToTheGoldenFrom30BitsOn) {
 }
 
 TEST_F(EvaluateFlight, ATraceOfAnotherFlightIsAFaultOfThePort) {
-  const CaseResult result = result_of([](Trace& flown) { ++flown.samples[95].in.timestamp; });
+  const VectorResult result = result_of([](Trace& flown) { ++flown.samples[95].in.timestamp; });
   EXPECT_EQ(result.verdict, Verdict::protocol);
   EXPECT_THAT(result.reason, HasSubstr("timestamp at tick 95"));
 }
@@ -148,7 +148,7 @@ TEST_F(EvaluateFlight, ATraceOfAnotherFlightIsAFaultOfThePort) {
 // Beyond the horizon, where the golden's rows do not apply: for a port with 22 bits that is every
 // tick.
 TEST_F(EvaluateFlight, AWrongAnswerIsFoundAtAnyTick) {
-  const CaseResult result = result_of(
+  const VectorResult result = result_of(
       [](Trace& flown) { flown.samples[95].out.vehicle_rates_setpoint.roll += 0.1f; }, 22);
   EXPECT_EQ(result.verdict, Verdict::fail);
   ASSERT_TRUE(result.first);

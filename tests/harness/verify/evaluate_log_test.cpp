@@ -6,7 +6,7 @@
 
 #include <gmock/gmock.h>
 
-#include "harness/host/host_here.hpp"
+#include "harness/host/in_process_host.hpp"
 #include "harness/port/builtin.hpp"
 #include "harness/port/port.hpp"
 
@@ -32,7 +32,7 @@ LoggedUnit log_of(Module module, const char* step_topic) {
 void add_outputs(const char* law, std::initializer_list<const char*> topics, LoggedUnit& log) {
   const std::size_t ticks = log.trace.samples.size();
   log.known.assign(ticks, Known::all);
-  HostHere reference(open_builtin());
+  InProcessHost reference(open_builtin());
   EXPECT_FALSE(reference.drive({law, log.module}, log.trace));
   for (const char* topic : topics) log.outputs.push_back({topic, ticks, ticks});
 }
@@ -69,7 +69,7 @@ void add_integral(LoggedUnit& log) {
 }
 
 LogResult result_of(const LoggedUnit& log, const char* port = "builtin") {
-  HostHere host(*open_port(port));
+  InProcessHost host(*open_port(port));
   return evaluate_log(log, law_of_log, host, {});
 }
 
@@ -106,7 +106,7 @@ TEST(EvaluateLog, PartsOfAnySizeGiveTheSameResult) {
   for (std::size_t tick = 0; tick < 50; ++tick) log.known[tick] = Known::nothing;
   for (const char* port : {"builtin", "fault:cascade-i-missing"}) {
     const auto in_parts_of = [&](std::size_t most) {
-      HostHere host(*open_port(port));
+      InProcessHost host(*open_port(port));
       return evaluate_log(log, law_of_log, host, {}, {{0, "MC_PITCHRATE_P", 0.1f}}, most);
     };
     const LogResult whole = in_parts_of(1000);
@@ -126,7 +126,7 @@ TEST(EvaluateLog, PartsOfAnySizeGiveTheSameResult) {
 
 TEST(EvaluateLog, ALogOfTheControllerWithEveryStepIsBelieved) {
   LoggedUnit log = logged_controller();
-  HostHere host(open_builtin());
+  InProcessHost host(open_builtin());
   EXPECT_EQ(evaluate_log(log, "px4-v1.5.5", host, {}).result.verdict, Verdict::pass);
   for (Sample& sample : log.trace.samples) sample.out.actuator_controls_0.control[0] += 0.1f;
   EXPECT_EQ(evaluate_log(log, "px4-v1.5.5", host, {}).result.verdict, Verdict::fail);
@@ -137,7 +137,7 @@ TEST(EvaluateLog, ALogOfTheControllerWithEveryStepIsBelieved) {
 TEST(EvaluateLog, AParameterOfThePortIsNotThatOfTheFlight) {
   LoggedUnit log = logged_rate_unit();
   const auto verdict_with = [&](const ParameterChange& change) {
-    HostHere host(open_builtin());
+    InProcessHost host(open_builtin());
     return evaluate_log(log, law_of_log, host, {}, {change}).result.verdict;
   };
   const ParameterChange flown{0, "MC_ROLLRATE_P", 0.15f}, other{0, "MC_ROLLRATE_P", 0.2f};
@@ -171,7 +171,7 @@ TEST(EvaluateLog, AnotherLogJudgesOnlyWhereTheReferenceAgreesWithIt) {
 // A port that takes any name of a profile for its own.
 class OfAnyProfile final : public PortHost {
  public:
-  const PortSays& says() const override { return host_.says(); }
+  const Declarations& declarations() const override { return host_.declarations(); }
   std::optional<PortFault> drive(const Subject& subject, Trace& trace) override {
     return host_.drive({law_of_log, subject.module}, trace);
   }
@@ -183,7 +183,7 @@ class OfAnyProfile final : public PortHost {
   bool supports(const std::string& /*wanted*/) override { return true; }
 
  private:
-  HostHere host_{open_builtin()};
+  InProcessHost host_{open_builtin()};
 };
 
 TEST(EvaluateLog, ALogOfAnotherLawIsBelieved) {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/core/file.hpp"
-#include "harness/host/host_here.hpp"
+#include "harness/host/in_process_host.hpp"
 #include "harness/port/builtin.hpp"
 #include "harness/trace/csv.hpp"
 #include "harness/trace/trace_parts.hpp"
@@ -22,7 +22,7 @@ namespace {
 using testing::HasSubstr;
 
 std::unique_ptr<PortHost> opened(const std::string& specification) {
-  auto host = open_host_here(specification);
+  auto host = open_in_process_host(specification);
   if (!host) throw std::invalid_argument(host.error().to_string());
   return *std::move(host);
 }
@@ -30,7 +30,7 @@ std::unique_ptr<PortHost> opened(const std::string& specification) {
 class EvaluateTest : public testing::Test {
  protected:
   // The first case at 100 Hz.
-  Result<CaseResult> evaluate(const std::string& port, Level level = Level::numeric) {
+  Result<VectorResult> evaluate(const std::string& port, Level level = Level::numeric) {
     const auto golden = Golden::open(suite_.golden(), suite_[0]);
     if (!golden) return tl::unexpected(golden.error());
     const auto host = opened(port);
@@ -110,13 +110,13 @@ TEST_F(EvaluateTest, ARecordedTraceIsGivenToThePort) {
   EXPECT_EQ(judge(test_port("sign_flip")).verdict, Verdict::fail);
   EXPECT_EQ(judge(test_port("refuses_profile")).verdict, Verdict::skip);
   recorded.samples[5].out.actuator_controls_0.control[3] += 0.5f;
-  const CaseResult result = judge("builtin");
+  const VectorResult result = judge("builtin");
   ASSERT_TRUE(result.first);
   EXPECT_EQ(result.first->tick, 5u);
 }
 
 // Everything that a report shows, except the time that it took.
-std::string shown(CaseResult result) {
+std::string shown(VectorResult result) {
   result.elapsed_s = 0;
   return to_json(result).dump();
 }
@@ -126,7 +126,7 @@ class UnsupportedLater final : public PortHost {
  public:
   explicit UnsupportedLater(const std::string& port) : host_(opened(port)) {}
 
-  const PortSays& says() const override { return host_->says(); }
+  const Declarations& declarations() const override { return host_->declarations(); }
   std::optional<PortFault> drive(const Subject& subject, Trace& trace) override {
     auto fault = host_->drive(subject, trace);
     if (fault || subject.part.first_tick + trace.samples.size() <= 12) return fault;
@@ -156,7 +156,7 @@ class PartsTest : public EvaluateTest {
                        Level level = Level::numeric) {
     const Subject subject{"px4-v1.5.5"};
     const Tolerances tolerances(level);
-    const CaseResult whole = evaluate_trace(recorded_, subject, *open(), tolerances);
+    const VectorResult whole = evaluate_trace(recorded_, subject, *open(), tolerances);
     for (const std::size_t most : {1U, 7U, 30U, 1000U}) {
       PartsOfTrace parts(recorded_);
       const auto host = open();
@@ -172,7 +172,7 @@ class PartsTest : public EvaluateTest {
 TEST_F(PartsTest, OfAnySizeGiveTheResultOfTheWhole) {
   recorded_.parameters.push_back({9, "MC_PITCHRATE_P", 0.3f});
   recorded_.samples[9].in.updated |= ATTEST_UPDATED_PARAMETER_UPDATE;
-  HostHere reference(open_builtin());
+  InProcessHost reference(open_builtin());
   ASSERT_FALSE(reference.drive({"px4-v1.5.5"}, recorded_));
   for (const Level level : {Level::exact, Level::numeric, Level::events}) {
     for (const std::string& port :

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/casefile/parse.hpp"
-#include "harness/host/host_here.hpp"
+#include "harness/host/in_process_host.hpp"
 #include "harness/loop/case_timing.hpp"
 #include "harness/plant/vehicle_models.hpp"
 #include "harness/port/builtin.hpp"
@@ -28,7 +28,7 @@ class AFlight {
         iris_(*VehicleModel::load(tree / "models", "iris")) {
     case_.duration = {60, Span::In::ticks};
     plan_ = {{rate, PlantConfiguration{"iris", PlantKind::ode}}, flight_timing(case_, rate)};
-    flown = *HostHere(open_builtin(), {}, course()).fly(plan_);
+    flown = *InProcessHost(open_builtin(), {}, course()).fly(plan_);
   }
 
   std::string contradiction() const { return flight_contradiction(course(), plan_, flown); }
@@ -36,7 +36,7 @@ class AFlight {
   // Makes the outputs those of the law for the inputs of the trace.
   void answer(Trace& trace) const {
     const Subject subject{case_.profile, module_of(trace.present)};
-    EXPECT_FALSE(HostHere(open_builtin()).drive(subject, trace));
+    EXPECT_FALSE(InProcessHost(open_builtin()).drive(subject, trace));
   }
 
   Flown flown;

@@ -58,9 +58,9 @@ TEST(TolerancesOf, TheLsbOfAPortIsAllowedInAdditionToTheToleranceOfTheCase) {
 }
 
 TEST(HasOtherSteps, ARecordingOfAFixedStepBeginsOnePeriodAfterZero) {
-  PortSays port;
+  Declarations port;
   port.fixed_step = Rate::hz(250);
-  CaseResult result;
+  VectorResult result;
   Trace recorded = counting(3);
   EXPECT_FALSE(has_other_steps(port, recorded, Module::mc_att_control, result));
   for (Sample& sample : recorded.samples) sample.in.timestamp -= 4000;
@@ -69,9 +69,9 @@ TEST(HasOtherSteps, ARecordingOfAFixedStepBeginsOnePeriodAfterZero) {
 }
 
 TEST(HasOtherSteps, SamplesOfARateUnitAreTakenAtItsSteps) {
-  PortSays port;
+  Declarations port;
   port.fixed_step = Rate::hz(250);
-  CaseResult result;
+  VectorResult result;
   Trace recorded = counting(3);
   for (Sample& sample : recorded.samples) {
     sample.rate_in.vehicle_angular_velocity.timestamp_sample = sample.rate_in.timestamp;

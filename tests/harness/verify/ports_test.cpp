@@ -21,16 +21,16 @@ class PortsTest : public testing::Test {
  protected:
   void SetUp() override { suite_.add_three(); }
 
-  JobResults<CaseResult> run(const std::string& port) {
+  JobResults<VectorResult> run(const std::string& port) {
     return suite_.run(host_of(port == "builtin" ? port : test_port(port)));
   }
 
   // The results of the six tasks, all of one verdict.
-  std::vector<CaseResult> all_are(const std::string& port, Verdict verdict) {
+  std::vector<VectorResult> all_are(const std::string& port, Verdict verdict) {
     const auto outcome = run(port);
     EXPECT_THAT(outcome.errors, IsEmpty());
     EXPECT_EQ(outcome.results.size(), 6u);
-    for (const CaseResult& result : outcome.results) {
+    for (const VectorResult& result : outcome.results) {
       EXPECT_EQ(name_of(result.verdict), name_of(verdict)) << result.id() << result.reason;
     }
     return outcome.results;
@@ -41,7 +41,7 @@ class PortsTest : public testing::Test {
 
 TEST_F(PortsTest, TheReferencePasses) {
   const auto results = all_are("builtin", Verdict::pass);
-  for (const CaseResult& result : results) EXPECT_EQ(result.ticks, 30u);
+  for (const VectorResult& result : results) EXPECT_EQ(result.ticks, 30u);
 }
 
 TEST_F(PortsTest, RightPortsPass) {
@@ -59,14 +59,14 @@ TEST_F(PortsTest, AWordyPortIsNotHeard) {
 
 // With a sanitizer the port's process prints a report and exits.
 TEST_F(PortsTest, ACrashHasTheNameOfItsSignalAndTheRestStillRuns) {
-  for (const CaseResult& result : all_are("crash", Verdict::crash)) {
+  for (const VectorResult& result : all_are("crash", Verdict::crash)) {
     EXPECT_THAT(result.reason, AnyOf(HasSubstr("was killed by signal 11 (Segmentation fault)"),
                                      HasSubstr("exited with status")));
   }
 }
 
 TEST_F(PortsTest, AnExitIsACrash) {
-  for (const CaseResult& result : all_are("exits", Verdict::crash)) {
+  for (const VectorResult& result : all_are("exits", Verdict::crash)) {
     EXPECT_THAT(result.reason, HasSubstr("the port's process exited with status"));
   }
 }
@@ -98,7 +98,7 @@ TEST_F(PortsTest, AHangInAnyFunctionIsATimeout) {
 }
 
 TEST_F(PortsTest, NanWhereANumberBelongsIsNonFinite) {
-  for (const CaseResult& result : all_are("non_finite", Verdict::non_finite)) {
+  for (const VectorResult& result : all_are("non_finite", Verdict::non_finite)) {
     ASSERT_TRUE(result.first);
     EXPECT_EQ(result.first->tick, fault_step);
     EXPECT_EQ(channels()[result.first->channel].name, "out/actuator_controls_0.control[1]");
@@ -106,7 +106,7 @@ TEST_F(PortsTest, NanWhereANumberBelongsIsNonFinite) {
 }
 
 TEST_F(PortsTest, ASilentPortFailsAtTheFirstPublication) {
-  for (const CaseResult& result : all_are("silent", Verdict::fail)) {
+  for (const VectorResult& result : all_are("silent", Verdict::fail)) {
     ASSERT_TRUE(result.first);
     EXPECT_EQ(result.first->tick, 0u);
     EXPECT_EQ(channels()[result.first->channel].name, "out/vehicle_rates_setpoint.published");
@@ -115,7 +115,7 @@ TEST_F(PortsTest, ASilentPortFailsAtTheFirstPublication) {
 }
 
 TEST_F(PortsTest, AStepThatFailsSaysWhere) {
-  for (const CaseResult& result : all_are("step_fails", Verdict::fail)) {
+  for (const VectorResult& result : all_are("step_fails", Verdict::fail)) {
     EXPECT_EQ(result.reason,
               "step at tick 20 returned ATTEST_FAILED; it last printed: no solution of the tilt");
     EXPECT_FALSE(result.first);
@@ -124,13 +124,13 @@ TEST_F(PortsTest, AStepThatFailsSaysWhere) {
 
 TEST_F(PortsTest, UnsupportedAndRefusedAreNoFailures) {
   all_are("unsupported_step", Verdict::unsupported);
-  for (const CaseResult& result : all_are("refuses_profile", Verdict::skip)) {
+  for (const VectorResult& result : all_are("refuses_profile", Verdict::skip)) {
     EXPECT_EQ(result.reason, "the port does not support profile px4-v1.5.5");
   }
 }
 
 TEST_F(PortsTest, WritingBehindTheOutputsBreaksTheProtocol) {
-  for (const CaseResult& result : all_are("writes_wild", Verdict::protocol)) {
+  for (const VectorResult& result : all_are("writes_wild", Verdict::protocol)) {
     EXPECT_THAT(result.reason, HasSubstr("step wrote outside its outputs at tick 20"));
   }
 }
@@ -138,7 +138,7 @@ TEST_F(PortsTest, WritingBehindTheOutputsBreaksTheProtocol) {
 TEST_F(PortsTest, AFlippedSignFailsWhereItShows) {
   const auto outcome = run("sign_flip");
   ASSERT_EQ(outcome.results.size(), 6u);
-  for (const CaseResult& result : outcome.results) {
+  for (const VectorResult& result : outcome.results) {
     if (result.name != "pitch") {
       EXPECT_EQ(result.verdict, Verdict::pass) << result.id();
       continue;
@@ -193,7 +193,7 @@ TEST_F(PortsTest, AFloatingPointModeOfThePortStaysItsOwn) {
     const auto outcome = suite_.run(host);
     EXPECT_THAT(outcome.errors, IsEmpty());
     EXPECT_EQ(outcome.results.size(), 8u);
-    for (const CaseResult& result : outcome.results) {
+    for (const VectorResult& result : outcome.results) {
       EXPECT_EQ(result.verdict, Verdict::pass) << result.id() << result.reason;
     }
     EXPECT_TRUE(has_denormals());

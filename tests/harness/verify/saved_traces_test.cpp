@@ -33,7 +33,7 @@ class SavingTraces : public testing::Test {
   }
 
   TemporaryDirectory folder_;
-  CaseResult result_;
+  VectorResult result_;
   Trace trace_ = stimulate(parameters_change, Rate::hz(250));
   Tolerances tolerances_;
 };

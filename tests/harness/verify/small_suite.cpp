@@ -40,21 +40,21 @@ HostOptions host_of(const std::string& port) {
   return host;
 }
 
-JobResults<CaseResult> SmallSuite::run(const HostOptions& host, int processes) const {
-  Jobs<CaseResult> jobs;
+JobResults<VectorResult> SmallSuite::run(const HostOptions& host, int processes) const {
+  Jobs<VectorResult> jobs;
   for (const Case& the_case : cases_) {
     const std::vector<SelectedCase> of_job{{the_case, the_case.configurations()}};
     jobs.push_back(std::make_unique<CaseJob>(of_job, nullptr, golden(), JudgeOptions{}, host));
   }
-  JobOptions<CaseResult> options;
+  JobOptions<VectorResult> options;
   options.processes = processes;
   options.in_process = host.in_process;
   return run_jobs(jobs, options);
 }
 
-std::vector<std::string> lines_of(const JobResults<CaseResult>& outcome) {
+std::vector<std::string> lines_of(const JobResults<VectorResult>& outcome) {
   std::vector<std::string> lines;
-  for (const CaseResult& result : outcome.results) {
+  for (const VectorResult& result : outcome.results) {
     std::string line = fmt::format("{} {} {}", result.id(), name_of(result.verdict), result.reason);
     if (result.first) {
       line += fmt::format("{}@{}: {} for {}", channels()[result.first->channel].name,

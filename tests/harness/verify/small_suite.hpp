@@ -27,7 +27,7 @@ class SmallSuite {
   std::filesystem::path golden() const { return files_.folder().parent_path() / "golden"; }
   const Case& operator[](std::size_t i) const { return cases_[i]; }
 
-  JobResults<CaseResult> run(const HostOptions& host, int processes = 1) const;
+  JobResults<VectorResult> run(const HostOptions& host, int processes = 1) const;
 
  private:
   CaseFiles files_;
@@ -35,6 +35,6 @@ class SmallSuite {
 };
 
 // One line a result: id, verdict, reason, first deviation; and one an error.
-std::vector<std::string> lines_of(const JobResults<CaseResult>& outcome);
+std::vector<std::string> lines_of(const JobResults<VectorResult>& outcome);
 
 }  // namespace attest

@@ -19,8 +19,8 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-CaseResult with(Verdict verdict) {
-  CaseResult result;
+VectorResult with(Verdict verdict) {
+  VectorResult result;
   result.profile = "px4-v1.5.5";
   result.group = "attitude";
   result.name = "roll_30";
@@ -69,17 +69,17 @@ TEST(RunResult, Counts) {
 
 // --- verdict_json ---
 
-CaseResult through_json(const CaseResult& result) {
+VectorResult through_json(const VectorResult& result) {
   const std::string line = text_of(to_json(result));
   EXPECT_EQ(line.find('\n'), std::string::npos);
-  const Result<CaseResult> back = case_result_from_json(json::parse(line));
+  const Result<VectorResult> back = vector_result_from_json(json::parse(line));
   EXPECT_TRUE(back) << back.error().message;
-  return back ? *back : CaseResult{};
+  return back ? *back : VectorResult{};
 }
 
 std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
 
-void expect_same(const CaseResult& a, const CaseResult& b) {
+void expect_same(const VectorResult& a, const VectorResult& b) {
   EXPECT_EQ(a.id(), b.id());
   EXPECT_EQ(a.rate, b.rate);
   EXPECT_EQ(a.verdict, b.verdict);
@@ -107,7 +107,7 @@ void expect_same(const CaseResult& a, const CaseResult& b) {
 
 TEST(VerdictJson, RoundTripsEveryVerdict) {
   for (int i = 0; i < verdict_count; ++i) {
-    CaseResult result = with(static_cast<Verdict>(i));
+    VectorResult result = with(static_cast<Verdict>(i));
     result.reason = "line\none \"two\" \x01 \xc2\xb0";
     result.ticks = 5000;
     result.deviating_ticks = 17;
@@ -122,7 +122,7 @@ TEST(VerdictJson, RoundTripsEveryKindOfNumber) {
   for (const double value :
        {0.0, -0.0, 0.10000000149011612, -1.5, 1e-45, 3.4028234663852886e38, 1e300, 5e-324, inf,
         -inf, static_cast<double>(std::bit_cast<float>(0x7fc00000U)), negative_nan}) {
-    CaseResult result = with(Verdict::fail);
+    VectorResult result = with(Verdict::fail);
     Deviation first;
     first.tick = std::numeric_limits<std::size_t>::max();
     first.timestamp_us = std::numeric_limits<std::uint64_t>::max();
@@ -139,24 +139,24 @@ TEST(VerdictJson, RoundTripsEveryKindOfNumber) {
 }
 
 TEST(VerdictJson, OnlyASkipIsOfTheExactLevelOnly) {
-  CaseResult result = with(Verdict::skip);
+  VectorResult result = with(Verdict::skip);
   EXPECT_FALSE(through_json(result).exact_only);
   result.exact_only = true;
   EXPECT_TRUE(through_json(result).exact_only);
   json wrong = to_json(result);
   wrong["verdict"] = "pass";
-  ASSERT_FALSE(case_result_from_json(wrong));
-  EXPECT_THAT(case_result_from_json(wrong).error().message, HasSubstr("`exact_only`"));
+  ASSERT_FALSE(vector_result_from_json(wrong));
+  EXPECT_THAT(vector_result_from_json(wrong).error().message, HasSubstr("`exact_only`"));
 }
 
 TEST(VerdictJson, RoundTripsAFlight) {
   const double inf = std::numeric_limits<double>::infinity();
-  CaseResult result = with(Verdict::fail);
+  VectorResult result = with(Verdict::fail);
   result.plant_configuration = PlantConfiguration{"hexa", PlantKind::ode};
   for (int i = 0; i <= static_cast<int>(Measure::sink_m); ++i) {
     result.metrics.push_back({"m", static_cast<Measure>(i), inf, 0.1, 0.05, -inf, 2});
   }
-  const CaseResult back = through_json(result);
+  const VectorResult back = through_json(result);
   expect_same(result, back);
   ASSERT_EQ(back.metrics.size(), result.metrics.size());
   for (std::size_t i = 0; i < back.metrics.size(); ++i) {
@@ -189,7 +189,7 @@ TEST(MetricResult, IsWithinItsBoundsAndNearTheReference) {
 
 TEST(VerdictJson, RoundTripsEveryChannel) {
   for (std::size_t channel = 0; channel < channels().size(); ++channel) {
-    CaseResult result = with(Verdict::fail);
+    VectorResult result = with(Verdict::fail);
     result.first = Deviation{};
     result.first->channel = channel;
     result.first->want = 1;
@@ -198,7 +198,7 @@ TEST(VerdictJson, RoundTripsEveryChannel) {
 }
 
 TEST(VerdictJson, IsWhatTheHeaderSays) {
-  CaseResult result = with(Verdict::fail);
+  VectorResult result = with(Verdict::fail);
   result.first = Deviation{};
   result.first->tick = 17;
   result.first->channel = *find_channel(Module::mc_att_control, "out/vehicle_rates_setpoint.roll");
@@ -221,7 +221,7 @@ TEST(VerdictJson, IsWhatTheHeaderSays) {
 }
 
 TEST(VerdictJson, HasTheStagesOfTheFirstDeviation) {
-  CaseResult result = with(Verdict::fail);
+  VectorResult result = with(Verdict::fail);
   result.first = Deviation{};
   result.first->channel = *find_channel(Module::mc_att_control, "out/vehicle_rates_setpoint.roll");
   result.first->stages = only(Stage::sticks);
@@ -232,24 +232,24 @@ TEST(VerdictJson, HasTheStagesOfTheFirstDeviation) {
   EXPECT_EQ(out["first"]["stages"], json({"sticks", "attitude law"}));
   EXPECT_EQ(through_json(result).first->stages, result.first->stages);
   out["first"]["stages"][0] = "torsion";
-  EXPECT_THAT(case_result_from_json(out).error().message, HasSubstr("no stage `torsion`"));
+  EXPECT_THAT(vector_result_from_json(out).error().message, HasSubstr("no stage `torsion`"));
 }
 
 TEST(VerdictJson, WordsThatAreNotUtf8AreRepaired) {
-  CaseResult result = with(Verdict::crash);
+  VectorResult result = with(Verdict::crash);
   result.reason = "last words: \xff";
   EXPECT_EQ(through_json(result).reason, "last words: \xef\xbf\xbd");
 }
 
 // Each is a line that a broken process could send.
 TEST(VerdictJson, NothingIsTakenOnTrust) {
-  CaseResult result = with(Verdict::fail);
+  VectorResult result = with(Verdict::fail);
   result.first = Deviation{};
   result.first->channel = *find_channel(Module::mc_att_control, "out/vehicle_rates_setpoint.roll");
   result.tightest = Headroom{};
   const json right = to_json(result);
   const auto complaint = [](const json& wrong) {
-    const auto read = case_result_from_json(wrong);
+    const auto read = vector_result_from_json(wrong);
     return read ? std::string("accepted") : read.error().message;
   };
   const auto with_member = [&right](const char* pointer, const json& value) {

@@ -85,7 +85,7 @@ TEST(FlightPage, HasTheVerdictAndTheMetrics) {
   SimulatedFlight flight{passed("flight", "hover", Rate::hz(250)), two_ticks()};
   flight.result.verdict = Verdict::fail;
   flight.result.metrics = {{"levels", Measure::settling_time_s, 3.5, 3.5, 0, 0, 2}};
-  PortSays port;
+  Declarations port;
   port.name = "<b>acme</b>";
   const std::string page = flight_page({flight}, port);
   EXPECT_THAT(page, HasSubstr("</span> fail</p>"));

@@ -88,7 +88,7 @@ TEST(HtmlReport, CountsFailuresWithoutADivergenceByReason) {
   RunResult run = sample_run();
   run.results.push_back(
       *std::find_if(run.results.begin(), run.results.end(),
-                    [](const CaseResult& result) { return result.verdict == Verdict::timeout; }));
+                    [](const VectorResult& result) { return result.verdict == Verdict::timeout; }));
   EXPECT_THAT(page_of(run), HasSubstr("2 timeout</b>: no answer within 10 s"));
   EXPECT_THAT(page_of(passing_run()), Not(HasSubstr("Failures without a deviation")));
 }

@@ -18,17 +18,17 @@ using testing::Not;
 
 constexpr std::size_t unlimited = 1'000'000;
 
-CaseResult failed(const std::string& group, const std::string& name, int rate_hz) {
-  CaseResult result = passed(group, name, Rate::hz(rate_hz));
+VectorResult failed(const std::string& group, const std::string& name, int rate_hz) {
+  VectorResult result = passed(group, name, Rate::hz(rate_hz));
   result.verdict = Verdict::fail;
   result.first = deviation("out/vehicle_rates_setpoint.yaw", 2, 1.5f, 0.5f, 2e-4);
   result.deviating_ticks = 1;
   return result;
 }
 
-std::vector<std::string> ids(const std::vector<const CaseResult*>& results) {
+std::vector<std::string> ids(const std::vector<const VectorResult*>& results) {
   std::vector<std::string> out;
-  for (const CaseResult* result : results) out.push_back(result->id());
+  for (const VectorResult* result : results) out.push_back(result->id());
   return out;
 }
 
@@ -70,7 +70,7 @@ class Plots : public testing::Test {
     }
     Trace got = want;
     got.samples[2].out.vehicle_rates_setpoint.yaw = 1.5f;
-    for (CaseResult& result : run_.results) {
+    for (VectorResult& result : run_.results) {
       save_traces(folder_.path(), {result.profile}, {got, want, Tolerances()}, result);
       EXPECT_EQ(result.reason, "");
     }

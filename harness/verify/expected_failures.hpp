@@ -28,7 +28,7 @@ struct ExpectedFailure {
 
 class ExpectedFailures {
  public:
-  // `suite`: the ids of the suite's open-loop vectors (CaseResult::id). Errors: the file is
+  // `suite`: the ids of the suite's open-loop vectors (VectorResult::id). Errors: the file is
   // unreadable or not TOML, an unknown key, an entry without a reason, an entry that excuses a
   // whole profile: it matches all vectors of the profile in `suite`, and would match those of a new
   // group.
@@ -36,14 +36,14 @@ class ExpectedFailures {
                                        const std::vector<std::string>& suite);
 
   // Whether the result is a failure that an entry excuses.
-  bool expects(const CaseResult& result) const;
+  bool expects(const VectorResult& result) const;
 
   // A listed result becomes xfail if an entry excuses its verdict, and xpass if it passes.
   // `complete`: all vectors were run, so an entry that matches no result is an error of the run.
   void apply(bool complete, RunResult& run) const;
 
  private:
-  void expect(CaseResult& result, std::vector<bool>& used) const;
+  void expect(VectorResult& result, std::vector<bool>& used) const;
 
   std::filesystem::path file_;
   std::vector<ExpectedFailure> entries_;

@@ -1,4 +1,4 @@
-#include "harness/verify/expected.hpp"
+#include "harness/verify/expected_failures.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -66,7 +66,7 @@ std::string names_of(const std::vector<Verdict>& verdicts) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string with_reason_of(const CaseResult& result, const std::string& text) {
+std::string with_reason_of(const VectorResult& result, const std::string& text) {
   return fmt::format("{}{}{}", text, result.reason.empty() ? "" : "; ", result.reason);
 }
 
@@ -96,13 +96,13 @@ Result<ExpectedFailures> ExpectedFailures::read(const std::filesystem::path& fil
   return expected;
 }
 
-bool ExpectedFailures::expects(const CaseResult& result) const {
+bool ExpectedFailures::expects(const VectorResult& result) const {
   return std::ranges::any_of(entries_, [&](const ExpectedFailure& entry) {
     return entry.excuses(result.verdict) && matches(entry.pattern, result.id());
   });
 }
 
-void ExpectedFailures::expect(CaseResult& result, std::vector<bool>& used) const {
+void ExpectedFailures::expect(VectorResult& result, std::vector<bool>& used) const {
   // The first matching entry that excuses the verdict, else the first matching entry.
   const ExpectedFailure* entry = nullptr;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
@@ -128,7 +128,7 @@ void ExpectedFailures::expect(CaseResult& result, std::vector<bool>& used) const
 
 void ExpectedFailures::apply(bool complete, RunResult& run) const {
   std::vector<bool> used(entries_.size(), false);
-  for (CaseResult& result : run.results) expect(result, used);
+  for (VectorResult& result : run.results) expect(result, used);
   for (std::size_t i = 0; complete && i < entries_.size(); ++i) {
     if (used[i]) continue;
     run.errors.push_back({fmt::format("`{}` is no case that was run; case ids never change "
@@ -141,19 +141,19 @@ void ExpectedFailures::apply(bool complete, RunResult& run) const {
 std::string expected_failures_of(const RunResult& run) {
   struct Count {
     std::size_t all = 0;
-    std::vector<const CaseResult*> failed;
+    std::vector<const VectorResult*> failed;
   };
   std::map<std::string, Count> cases;
-  for (const CaseResult& result : run.results) {
+  for (const VectorResult& result : run.results) {
     Count& count = cases[result.case_id()];
     ++count.all;
     const bool fails = fails_a_run(result.verdict) && result.verdict != Verdict::xpass;
     if (fails || result.verdict == Verdict::xfail) count.failed.push_back(&result);
   }
   TomlWriter toml;
-  const auto reason = [](const std::vector<const CaseResult*>& failed) {
+  const auto reason = [](const std::vector<const VectorResult*>& failed) {
     std::vector<Verdict> verdicts;
-    for (const CaseResult* result : failed) {
+    for (const VectorResult* result : failed) {
       if (result->verdict == Verdict::xfail) {  // in a merged report: what its list excused
         std::ranges::copy(excused_by(result->reason), std::back_inserter(verdicts));
       } else {
@@ -170,7 +170,7 @@ std::string expected_failures_of(const RunResult& run) {
       toml.set("expected", id + "@*", reason(count.failed));
       continue;
     }
-    for (const CaseResult* result : count.failed) {
+    for (const VectorResult* result : count.failed) {
       toml.set("expected", result->id(), reason({result}));
     }
   }

@@ -1,4 +1,4 @@
-#include "harness/host/port_says.hpp"
+#include "harness/host/declarations.hpp"
 
 #include <algorithm>
 
@@ -28,7 +28,7 @@ std::string text_of(const std::vector<std::string>& names) {
 
 }  // namespace
 
-std::string change(const PortSays& said, const PortSays& now) {
+std::string change(const Declarations& said, const Declarations& now) {
   const auto changed = [](const char* what, const std::string& before, const std::string& after) {
     if (before == after) return std::string();
     return fmt::format(
@@ -49,7 +49,7 @@ std::string change(const PortSays& said, const PortSays& now) {
   return "";
 }
 
-PortFault no_unit_of(const std::string& profile, const PortSays& said) {
+PortFault no_unit_of(const std::string& profile, const Declarations& said) {
   const auto& made = said.profiles;
   if (std::find(made.begin(), made.end(), profile) == made.end()) {
     return {PortFault::Kind::profile, 0,
@@ -60,13 +60,13 @@ PortFault no_unit_of(const std::string& profile, const PortSays& said) {
                       profile)};
 }
 
-std::optional<PortFault> held_to(const PortSays& said, const std::string& profile,
+std::optional<PortFault> held_to(const Declarations& said, const std::string& profile,
                                  std::optional<PortFault> fault) {
   if (fault && fault->kind == PortFault::Kind::profile) return no_unit_of(profile, said);
   return fault;
 }
 
-PortSays PortSays::asked(const Port& port) {
+Declarations Declarations::asked(const Port& port) {
   return {port.name(),
           port.version(),
           port.unsupported_groups(),

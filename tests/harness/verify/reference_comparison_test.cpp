@@ -1,4 +1,4 @@
-#include "harness/verify/answers.hpp"
+#include "harness/verify/reference_comparison.hpp"
 
 #include <limits>
 #include <optional>
@@ -24,10 +24,10 @@ Trace flown(const std::string& body = "[control_state]\nroll_rate = 0.4\npitch_r
   return trace;
 }
 
-Answers answers_of(const Trace& trace, std::optional<int> fraction_bits = {}) {
-  auto answers = compare_answers(trace, profile, Tolerances(), fraction_bits);
+ReferenceComparison answers_of(const Trace& trace, std::optional<int> fraction_bits = {}) {
+  auto answers = compare_with_reference(trace, profile, Tolerances(), fraction_bits);
   EXPECT_TRUE(answers) << answers.error().to_string();
-  return answers ? *answers : Answers();
+  return answers ? *answers : ReferenceComparison();
 }
 
 Comparison compared(const Trace& trace) { return answers_of(trace).comparison; }
@@ -40,13 +40,13 @@ Trace flown_over_the_gate(double thrust) {
                   thrust));
 }
 
-TEST(Answers, OfTheReferenceAreRightToTheLastTick) {
+TEST(ReferenceComparison, OfTheReferenceAreRightToTheLastTick) {
   const Comparison comparison = compared(flown());
   EXPECT_TRUE(comparison.agrees()) << comparison.mismatch;
   EXPECT_EQ(comparison.ticks, 10u);
 }
 
-TEST(Answers, AWrongOneIsFoundAtItsTick) {
+TEST(ReferenceComparison, AWrongOneIsFoundAtItsTick) {
   for (const std::size_t tick : {0u, 4u, 9u}) {
     Trace trace = flown();
     trace.samples[tick].out.actuator_controls_0.control[2] += 0.01f;
@@ -57,7 +57,7 @@ TEST(Answers, AWrongOneIsFoundAtItsTick) {
   }
 }
 
-TEST(Answers, WhatIsNoNumberIsFound) {
+TEST(ReferenceComparison, WhatIsNoNumberIsFound) {
   Trace trace = flown();
   trace.samples[7].out.mc_att_ctrl_status.yaw_rate_integ = std::numeric_limits<float>::quiet_NaN();
   const Comparison comparison = compared(trace);
@@ -67,20 +67,20 @@ TEST(Answers, WhatIsNoNumberIsFound) {
 }
 
 // The reference receives the same parameters as the port.
-TEST(Answers, ParametersAreThoseOfTheFlight) {
+TEST(ReferenceComparison, ParametersAreThoseOfTheFlight) {
   Trace trace = flown("[parameters]\nMC_ROLL_P = 9\n[control_state]\nq = { roll_deg = 10 }\n");
   EXPECT_TRUE(compared(trace).agrees());
   trace.parameters.clear();
   EXPECT_FALSE(compared(trace).agrees());
 }
 
-TEST(Answers, WhereRoundingDecidesADeviationIsUndecided) {
+TEST(ReferenceComparison, WhereRoundingDecidesADeviationIsUndecided) {
   EXPECT_FALSE(answers_of(flown_over_the_gate(0.2)).undecided);
   EXPECT_EQ(compared(flown_over_the_gate(0.2)).ticks, 10u);
   for (const std::size_t tick : {6u, 8u}) {
     Trace trace = flown_over_the_gate(0.2);
     trace.samples[tick].out.actuator_controls_0.control[0] += 0.01f;
-    const Answers answers = answers_of(trace);
+    const ReferenceComparison answers = answers_of(trace);
     EXPECT_TRUE(answers.comparison.agrees());
     EXPECT_EQ(answers.comparison.ticks, 6u);
     ASSERT_TRUE(answers.undecided);
@@ -90,27 +90,27 @@ TEST(Answers, WhereRoundingDecidesADeviationIsUndecided) {
   }
 }
 
-TEST(Answers, ADeviationBeforeThatIsWrong) {
+TEST(ReferenceComparison, ADeviationBeforeThatIsWrong) {
   Trace trace = flown_over_the_gate(0.2);
   for (const std::size_t tick : {5u, 8u}) {
     trace.samples[tick].out.actuator_controls_0.control[0] += 0.01f;
   }
-  const Answers answers = answers_of(trace);
+  const ReferenceComparison answers = answers_of(trace);
   EXPECT_FALSE(answers.undecided);
   ASSERT_TRUE(answers.comparison.first);
   EXPECT_EQ(answers.comparison.first->tick, 5u);
 }
 
-TEST(Answers, WhatIsNoNumberIsWrongWhereRoundingDecidesToo) {
+TEST(ReferenceComparison, WhatIsNoNumberIsWrongWhereRoundingDecidesToo) {
   Trace trace = flown_over_the_gate(0.2);
   trace.samples[8].out.actuator_controls_0.control[0] = std::numeric_limits<float>::infinity();
-  const Answers answers = answers_of(trace);
+  const ReferenceComparison answers = answers_of(trace);
   EXPECT_FALSE(answers.undecided);
   EXPECT_TRUE(answers.comparison.got_non_finite);
 }
 
 // A port with few bits rounds more, so rounding decides more often.
-TEST(Answers, FewerBitsDecideByRoundingFurtherFromADecision) {
+TEST(ReferenceComparison, FewerBitsDecideByRoundingFurtherFromADecision) {
   Trace trace = flown_over_the_gate(0.2001);
   trace.samples[8].out.actuator_controls_0.control[0] += 0.01f;
   EXPECT_FALSE(answers_of(trace).undecided);
@@ -119,7 +119,7 @@ TEST(Answers, FewerBitsDecideByRoundingFurtherFromADecision) {
 }
 
 // A setpoint at half a turn of yaw: rounding decides which way the vehicle turns.
-TEST(Answers, RoundingDecidesInTheUnitsOfTheCascade) {
+TEST(ReferenceComparison, RoundingDecidesInTheUnitsOfTheCascade) {
   const Case half_turn =
       unit_case_of(Module::attitude_unit, "px4-v1.16.0",
                    "[vehicle_attitude_setpoint]\nq_d = { yaw_deg = { signal = "
@@ -128,16 +128,16 @@ TEST(Answers, RoundingDecidesInTheUnitsOfTheCascade) {
   ASSERT_FALSE(drive(*open_builtin(), subject_of(half_turn), trace));
   trace.present = channels_of(Module::attitude_unit);
   trace.samples[7].attitude_out.vehicle_rates_setpoint.yaw *= -1;
-  const auto answers = compare_answers(trace, "px4-v1.16.0", Tolerances());
+  const auto answers = compare_with_reference(trace, "px4-v1.16.0", Tolerances());
   ASSERT_TRUE(answers && answers->undecided);
   EXPECT_EQ(answers->undecided->decision, Decision::yaw_wrap);
   EXPECT_EQ(answers->undecided->tick, 6u);
   trace.samples[5].attitude_out.vehicle_rates_setpoint.yaw *= -1;
-  EXPECT_FALSE(compare_answers(trace, "px4-v1.16.0", Tolerances())->undecided);
+  EXPECT_FALSE(compare_with_reference(trace, "px4-v1.16.0", Tolerances())->undecided);
 }
 
-TEST(Answers, TheReferenceMustHaveTheProfile) {
-  EXPECT_FALSE(compare_answers(flown(), "px4-v9.9.9", Tolerances()));
+TEST(ReferenceComparison, TheReferenceMustHaveTheProfile) {
+  EXPECT_FALSE(compare_with_reference(flown(), "px4-v9.9.9", Tolerances()));
 }
 
 }  // namespace

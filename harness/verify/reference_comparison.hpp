@@ -13,7 +13,7 @@
 
 namespace attest {
 
-struct Answers {
+struct ReferenceComparison {
   // Of the ticks before Undecided::tick if `undecided` is set, otherwise of all ticks. If all ticks
   // agree, `tightest` is still that of the ticks before the first decision by rounding.
   Comparison comparison;
@@ -33,8 +33,8 @@ struct Answers {
 // tick. A NaN or infinity where the reference has a number is never undecided. `fraction_bits` is
 // set for a port in fixed point, which rounds more. REQUIRES: `flown` is the whole trace of a unit,
 // with at least one tick. Errors: the reference does not have the profile, or fails.
-Result<Answers> compare_answers(const Trace& flown, const std::string& profile,
-                                const Tolerances& tolerances,
-                                std::optional<int> fraction_bits = {});
+Result<ReferenceComparison> compare_with_reference(const Trace& flown, const std::string& profile,
+                                                   const Tolerances& tolerances,
+                                                   std::optional<int> fraction_bits = {});
 
 }  // namespace attest

@@ -1,4 +1,4 @@
-#include "harness/verify/answers.hpp"
+#include "harness/verify/reference_comparison.hpp"
 
 #include <memory>
 #include <span>
@@ -37,8 +37,8 @@ class Answering {
     comparer_.add(got, want, changes);
   }
 
-  Answers finish(std::size_t ticks) {
-    Answers answers{comparer_.finish(ticks, ticks), std::nullopt};
+  ReferenceComparison finish(std::size_t ticks) {
+    ReferenceComparison answers{comparer_.finish(ticks, ticks), std::nullopt};
     Comparison& all = answers.comparison;
     if (!before_) return answers;
     if (all.agrees()) {
@@ -54,13 +54,14 @@ class Answering {
  private:
   TickComparer comparer_;
   std::optional<Comparison> before_;
-  Answers::Undecided near_{};
+  ReferenceComparison::Undecided near_{};
 };
 
 }  // namespace
 
-Result<Answers> compare_answers(const Trace& flown, const std::string& profile,
-                                const Tolerances& tolerances, std::optional<int> fraction_bits) {
+Result<ReferenceComparison> compare_with_reference(const Trace& flown, const std::string& profile,
+                                                   const Tolerances& tolerances,
+                                                   std::optional<int> fraction_bits) {
   const std::unique_ptr<Port> reference = open_builtin();
   const Module module = module_of(flown.present);
   const std::unique_ptr<Unit> unit = reference->create_unit(module, profile, "");

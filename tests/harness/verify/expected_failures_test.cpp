@@ -1,4 +1,4 @@
-#include "harness/verify/expected.hpp"
+#include "harness/verify/expected_failures.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@ namespace {
 
 using testing::HasSubstr;
 
-CaseResult result_of(const std::string& name, Verdict verdict, const Rate& rate = Rate::hz(250)) {
-  CaseResult result;
+VectorResult result_of(const std::string& name, Verdict verdict, const Rate& rate = Rate::hz(250)) {
+  VectorResult result;
   result.profile = "px4-v1.5.5";
   result.group = "tpa";
   result.name = name;

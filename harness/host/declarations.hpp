@@ -11,7 +11,7 @@
 
 namespace attest {
 
-struct PortSays {
+struct Declarations {
   std::string name, version;
   std::vector<std::string> unsupported_groups;
   std::optional<int> fraction_bits;  // of a port in fixed point
@@ -23,21 +23,21 @@ struct PortSays {
   std::vector<std::string> files = {};  // of a program: Port::files()
 
   // Asks a loaded port. The result has no profiles.
-  static PortSays asked(const Port& port);
+  static Declarations asked(const Port& port);
 };
 
 // "its attest.arithmetic is `fixed:20`, it was `none` when the port was asked first; ...": the
 // first difference; empty when there is none. The profiles are not compared.
-std::string change(const PortSays& said, const PortSays& now);
+std::string change(const Declarations& said, const Declarations& now);
 
 // The fault of a port whose create(profile) returned NULL. Kind::profile: it does not support the
 // profile. Kind::protocol: the profile is in `said.profiles`, so an earlier create() did not return
 // NULL.
-PortFault no_unit_of(const std::string& profile, const PortSays& said);
+PortFault no_unit_of(const std::string& profile, const Declarations& said);
 
 // Returns `fault`, but no_unit_of() in place of one of Kind::profile. The judge's process calls it
 // too: an answer from the port's process may say that the profile is not supported at any time.
-std::optional<PortFault> held_to(const PortSays& said, const std::string& profile,
+std::optional<PortFault> held_to(const Declarations& said, const std::string& profile,
                                  std::optional<PortFault> fault);
 
 }  // namespace attest

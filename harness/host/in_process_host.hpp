@@ -12,15 +12,15 @@
 
 namespace attest {
 
-class HostHere final : public PortHost {
+class InProcessHost final : public PortHost {
  public:
   // `said`: the port's declarations before the run, which must stay the same. Empty: its
   // declarations now. `calls`: where the port's calls are noted; outlives this. Null: the calls are
   // not noted.
-  HostHere(std::unique_ptr<Port> port, std::optional<PortSays> said = {}, Course course = {},
-           const PortCalls* calls = nullptr);
+  InProcessHost(std::unique_ptr<Port> port, std::optional<Declarations> said = {},
+                Course course = {}, const PortCalls* calls = nullptr);
 
-  const PortSays& says() const override { return says_; }
+  const Declarations& declarations() const override { return declarations_; }
   std::optional<PortFault> drive(const Subject& subject, Trace& trace) override;
   Result<Flown> fly(const FlightPlan& plan) override;
   Result<StepTimes> time_steps(const Subject& subject, const Trace& inputs,
@@ -40,7 +40,7 @@ class HostHere final : public PortHost {
   std::unique_ptr<Port> noted_;      // port_, with its calls noted; null without calls_
   std::optional<PartDriver> parts_;  // of a trace of which further parts follow
   PortFloatEnvironment ports_;
-  PortSays says_;
+  Declarations declarations_;
   Course course_;
   std::optional<Nanoseconds> clock_;
   std::optional<PaintedStack> stack_;
@@ -48,11 +48,11 @@ class HostHere final : public PortHost {
 
 // Opens the port with open_port(port, files). A change that the port makes to the floating point
 // environment while it is loaded does not reach the caller. The other arguments are those of
-// HostHere. Errors: those of open_port().
-Result<std::unique_ptr<PortHost>> open_host_here(const std::string& port,
-                                                 std::optional<PortSays> said = {},
-                                                 Course course = {},
-                                                 const PortCalls* calls = nullptr,
-                                                 const PortFiles* files = nullptr);
+// InProcessHost. Errors: those of open_port().
+Result<std::unique_ptr<PortHost>> open_in_process_host(const std::string& port,
+                                                       std::optional<Declarations> said = {},
+                                                       Course course = {},
+                                                       const PortCalls* calls = nullptr,
+                                                       const PortFiles* files = nullptr);
 
 }  // namespace attest

@@ -1,4 +1,4 @@
-#include "harness/host/host_here.hpp"
+#include "harness/host/in_process_host.hpp"
 
 #include <utility>
 
@@ -8,24 +8,25 @@
 
 namespace attest {
 
-HostHere::HostHere(std::unique_ptr<Port> port, std::optional<PortSays> said, Course course,
-                   const PortCalls* calls)
+InProcessHost::InProcessHost(std::unique_ptr<Port> port, std::optional<Declarations> said,
+                             Course course, const PortCalls* calls)
     : port_(std::move(port)),
       calls_(calls),
       noted_(calls ? calls->noted(*port_) : nullptr),
-      says_(said ? *std::move(said) : PortSays::asked(*port_)),
+      declarations_(said ? *std::move(said) : Declarations::asked(*port_)),
       course_(course) {}
 
-std::optional<PortFault> HostHere::held(std::optional<PortFault> fault,
-                                        const std::string& profile) const {
+std::optional<PortFault> InProcessHost::held(std::optional<PortFault> fault,
+                                             const std::string& profile) const {
   port_->finish();
-  if (const std::string difference = change(says_, PortSays::asked(*port_)); !difference.empty()) {
+  if (const std::string difference = change(declarations_, Declarations::asked(*port_));
+      !difference.empty()) {
     return PortFault{PortFault::Kind::protocol, 0, difference};
   }
-  return held_to(says_, profile, std::move(fault));
+  return held_to(declarations_, profile, std::move(fault));
 }
 
-std::optional<PortFault> HostHere::drive(const Subject& subject, Trace& trace) {
+std::optional<PortFault> InProcessHost::drive(const Subject& subject, Trace& trace) {
   const bool begins = subject.part.first_tick == 0;
   return ports_.run([&] {
     if (begins) parts_.reset();  // the judge may have stopped in the middle of a trace
@@ -34,7 +35,7 @@ std::optional<PortFault> HostHere::drive(const Subject& subject, Trace& trace) {
   });
 }
 
-std::optional<PortFault> HostHere::drive_part(const Subject& subject, Trace& part) {
+std::optional<PortFault> InProcessHost::drive_part(const Subject& subject, Trace& part) {
   const auto [first_tick, is_last] = subject.part;
   if (first_tick == 0) {
     auto unit = make_unit(driven(), subject);
@@ -47,7 +48,7 @@ std::optional<PortFault> HostHere::drive_part(const Subject& subject, Trace& par
   return held(std::move(fault), subject.profile);
 }
 
-Result<Flown> HostHere::fly(const FlightPlan& plan) {
+Result<Flown> InProcessHost::fly(const FlightPlan& plan) {
   const Case& whole = *course_.the_case;
   return ports_.run([&]() -> Result<Flown> {
     const auto reference = open_builtin();
@@ -66,8 +67,8 @@ Result<Flown> HostHere::fly(const FlightPlan& plan) {
   });
 }
 
-Result<StepTimes> HostHere::time_steps(const Subject& subject, const Trace& inputs,
-                                       bool with_stack) {
+Result<StepTimes> InProcessHost::time_steps(const Subject& subject, const Trace& inputs,
+                                            bool with_stack) {
   if (!clock_) clock_ = time_of_clock();
   StepTimes times;
   times.clock = *clock_;
@@ -88,7 +89,7 @@ Result<StepTimes> HostHere::time_steps(const Subject& subject, const Trace& inpu
   return times;
 }
 
-Result<void> HostHere::measure_stack(const Subject& subject, Trace trace, StepTimes& times) {
+Result<void> InProcessHost::measure_stack(const Subject& subject, Trace trace, StepTimes& times) {
   if (!stack_) {
     auto made = PaintedStack::make();
     if (!made) return tl::unexpected(made.error());
@@ -105,7 +106,7 @@ Result<void> HostHere::measure_stack(const Subject& subject, Trace trace, StepTi
   return {};
 }
 
-bool HostHere::supports(const std::string& profile) {
+bool InProcessHost::supports(const std::string& profile) {
   return ports_.run([&] {
     const bool is_made = makes_unit_of(driven(), profile);
     port_->finish();
@@ -113,13 +114,14 @@ bool HostHere::supports(const std::string& profile) {
   });
 }
 
-Result<std::unique_ptr<PortHost>> open_host_here(const std::string& port,
-                                                 std::optional<PortSays> said, Course course,
-                                                 const PortCalls* calls, const PortFiles* files) {
+Result<std::unique_ptr<PortHost>> open_in_process_host(const std::string& port,
+                                                       std::optional<Declarations> said,
+                                                       Course course, const PortCalls* calls,
+                                                       const PortFiles* files) {
   const DefaultFloatEnvironment callers;  // a library may change it when it is loaded
   auto opened = open_port(port, files);
   if (!opened) return tl::unexpected(opened.error());
-  return std::make_unique<HostHere>(*std::move(opened), std::move(said), course, calls);
+  return std::make_unique<InProcessHost>(*std::move(opened), std::move(said), course, calls);
 }
 
 }  // namespace attest
