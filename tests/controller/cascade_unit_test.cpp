@@ -38,8 +38,9 @@ using Units = ::testing::Types<attest_attitude_unit, attest_rate_unit>;
 TYPED_TEST_SUITE(CascadeUnit, Units);
 
 TYPED_TEST(CascadeUnit, KnowsItsProfiles) {
-  for (const std::string_view name : profile_names()) {
-    void* const self = this->unit().create(std::string(name).c_str());
+  for (const Profile profile : every_profile) {
+    const std::string name(name_of(profile));
+    void* const self = this->unit().create(name.c_str());
     EXPECT_NE(self, nullptr) << name;
     this->unit().destroy(self);
   }

@@ -30,8 +30,9 @@ TEST(Unit, HasAMixerAndABatteryEstimate) {
 }
 
 TEST(Unit, KnowsItsProfiles) {
-  for (const std::string_view name : profile_names()) {
-    void* const self = unit().create(std::string(name).c_str());
+  for (const Profile profile : every_profile) {
+    const std::string name(name_of(profile));
+    void* const self = unit().create(name.c_str());
     EXPECT_NE(self, nullptr) << name;
     unit().destroy(self);
   }
