@@ -87,6 +87,29 @@ TEST_F(EvaluateTest, AMissingGoldenIsOneErrorForAllRates) {
   EXPECT_THAT(outcome.errors[0].message, HasSubstr("no golden for px4-v1.5.5/tests/pitch"));
 }
 
+// Returns the given outputs for any inputs.
+class Reciting final : public PortHost {
+ public:
+  explicit Reciting(Trace answers) : answers_(std::move(answers)) {}
+
+  const Declarations& declarations() const override { return declarations_; }
+  std::optional<PortFault> drive(const Subject&, Trace& trace) override {
+    for (std::size_t i = 0; i < trace.samples.size(); ++i) {
+      trace.samples[i].out = answers_.samples[i].out;
+    }
+    return std::nullopt;
+  }
+  Result<Flown> fly(const FlightPlan&) override { return fail("no flights"); }
+  Result<StepTimes> time_steps(const Subject&, const Trace&, bool) override {
+    return fail("no times");
+  }
+  bool supports(const std::string&) override { return true; }
+
+ private:
+  Trace answers_;
+  Declarations declarations_;
+};
+
 // The case is unchanged, but its inputs are not: this happens if the harness changes.
 TEST_F(EvaluateTest, AGoldenWithOtherInputsIsAnError) {
   suite_.add_unblessed("pitch", pitching);
