@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Judged: crash. Exits at step 20, after it wrote the beginning of an answer into every descriptor
-// that is open: the head of a message for 30 samples, and a byte of them.
+// that is open: the head of a message for the outputs of 30 steps, and a byte of them.
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -8,8 +8,6 @@
 
 #include <attest_unit.h>
 #include <unistd.h>
-
-#include "harness/trace/channels.hpp"
 
 extern "C" const attest_unit* attest_starter_unit_v1(void);
 
@@ -21,7 +19,7 @@ constexpr std::string_view head = "{\"request\": 1}";
 struct Prefix {
   std::uint32_t magic = 0xa77e57ff, blobs = 1;
   std::uint64_t head_bytes = head.size();
-  std::array<std::uint64_t, 8> blob_bytes{30 * sizeof(attest::Sample)};
+  std::array<std::uint64_t, 8> blob_bytes{30 * sizeof(attest_outputs)};
 };
 
 int step(void* self, const attest_inputs* in, attest_outputs* out) {
