@@ -1,4 +1,4 @@
-// The clock that a real-time loop waits on: that of the machine (realtime/pacer.hpp), or a scripted
+// The clock that a real-time loop waits on: that of the machine (pacer.hpp), or a scripted
 // one in tests.
 #pragma once
 

@@ -9,10 +9,10 @@
 #include "harness/loop/land_detector.hpp"
 #include "harness/loop/plant_task.hpp"
 #include "harness/plant/plant.hpp"
+#include "harness/realtime/clock.hpp"
 #include "harness/realtime/histogram.hpp"
 #include "harness/realtime/links.hpp"
 #include "harness/realtime/usage.hpp"
-#include "harness/schedule/clock.hpp"
 
 namespace attest {
 

@@ -14,11 +14,11 @@
 
 #include "harness/casefile/case.hpp"
 #include "harness/loop/unit_task.hpp"
+#include "harness/realtime/clock.hpp"
 #include "harness/realtime/histogram.hpp"
 #include "harness/realtime/links.hpp"
 #include "harness/realtime/live_tick.hpp"
 #include "harness/realtime/usage.hpp"
-#include "harness/schedule/clock.hpp"
 #include "harness/schedule/delay_line.hpp"
 #include "harness/schedule/loop_rate.hpp"
 

@@ -1,7 +1,7 @@
 // The clock of a real-time loop. It sleeps until absolute times, so that latencies do not add up.
 #pragma once
 
-#include "harness/schedule/clock.hpp"
+#include "harness/realtime/clock.hpp"
 
 namespace attest {
 

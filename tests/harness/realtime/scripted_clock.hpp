@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "harness/schedule/clock.hpp"
+#include "harness/realtime/clock.hpp"
 
 namespace attest {
 
