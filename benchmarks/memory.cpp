@@ -59,8 +59,9 @@ double peak_mb(const std::function<void()>& work) {
 void whole_suite() {
   const auto cases = select_cases({ATTEST_SOURCE_DIR "/cases"}, {});
   VehicleModels vehicle_models(ATTEST_SOURCE_DIR "/models");
-  const auto suite_jobs = case_jobs(*cases, ATTEST_SOURCE_DIR "/golden", vehicle_models,
-                                    {Level::numeric}, HostOptions());
+  const auto suite_jobs =
+      case_jobs(*cases, std::make_shared<const Goldens>(ATTEST_SOURCE_DIR "/golden"),
+                vehicle_models, {Level::numeric}, HostOptions());
   JobOptions<VectorResult> options;
   options.processes = suite_processes;
   run_jobs(*suite_jobs, options);

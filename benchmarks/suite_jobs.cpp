@@ -21,7 +21,8 @@ void suite(benchmark::State& state, int processes, bool isolated = true,
     HostOptions host;
     host.in_process = !isolated;
     const auto jobs =
-        case_jobs(*cases, ATTEST_SOURCE_DIR "/golden", vehicle_models, {Level::numeric}, host);
+        case_jobs(*cases, std::make_shared<const Goldens>(ATTEST_SOURCE_DIR "/golden"),
+                  vehicle_models, {Level::numeric}, host);
     JobOptions<VectorResult> options;
     options.processes = processes;
     const auto outcome = run_jobs(*jobs, options);

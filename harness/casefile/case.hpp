@@ -177,4 +177,9 @@ struct Case {
   Case from_one_period_on() const;
 };
 
+// The tolerances of the level. At the numeric level, the case's own replace them where it has some,
+// and a port in fixed point gets wider ones for a run of `ticks` ticks (Tolerances::allow_lsb).
+Tolerances tolerances_of(const Case& the_case, Level level, std::optional<int> fraction_bits,
+                         std::size_t ticks);
+
 }  // namespace attest

@@ -78,4 +78,12 @@ std::vector<RunConfiguration> Case::configurations() const {
   return all;
 }
 
+Tolerances tolerances_of(const Case& the_case, Level level, std::optional<int> fraction_bits,
+                         std::size_t ticks) {
+  Tolerances tolerances(level);
+  for (const auto& [prefix, tolerance] : the_case.tolerances) tolerances.set(prefix, tolerance);
+  if (fraction_bits) tolerances.allow_lsb(*fraction_bits, ticks);
+  return tolerances;
+}
+
 }  // namespace attest

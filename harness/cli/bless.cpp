@@ -115,7 +115,7 @@ void print_left_out(const PendingGoldens& pending) {
 Result<BlessingOptions> blessing_of(const BlessOptions& options,
                                     const std::vector<SelectedCase>& cases,
                                     const SuiteFolder& suite) {
-  BlessingOptions blessing{suite.golden(), suite.models(), {options.reason}};
+  BlessingOptions blessing{suite.models(), {options.reason}};
   if (options.port.empty()) {
     if (auto checked = check_reference(suite); !checked) return tl::unexpected(checked.error());
     if (auto noted = note_uncovered(cases, suite); !noted) return tl::unexpected(noted.error());
@@ -132,14 +132,12 @@ Result<BlessingOptions> blessing_of(const BlessOptions& options,
 }
 
 // `port`: description of the port that made the goldens; empty: attest's reference made them.
-Result<void> replace_goldens(std::vector<NewGolden>& goldens, const std::string& port,
+Result<void> replace_goldens(NewGoldens& goldens, const std::string& port,
                              const SuiteFolder& suite) {
   if (!port.empty()) {
     if (auto named = write_file(suite.reference_file(), port + "\n"); !named) return named;
   }
-  for (NewGolden& golden : goldens) {
-    if (auto placed = golden.put_in_place(); !placed) return placed;
-  }
+  if (auto placed = goldens.put_in_place(); !placed) return placed;
   fmt::print("blessed {}\n", goldens.size());
   return {};
 }
@@ -157,7 +155,8 @@ Result<int> bless_selected(const BlessOptions& options, const Globals& globals) 
   if (!lock) return tl::unexpected(lock.error());
   const auto blessing = blessing_of(options, *cases, *suite);
   if (!blessing) return tl::unexpected(blessing.error());
-  auto pending = write_new_goldens(*cases, *blessing);
+  const Goldens goldens(suite->golden());
+  auto pending = write_new_goldens(*cases, goldens, *blessing);
   if (auto go_on = check_not_interrupted(); !go_on) return tl::unexpected(go_on.error());
   if (!pending) return tl::unexpected(pending.error());
   if (blessing->port) {
@@ -166,7 +165,7 @@ Result<int> bless_selected(const BlessOptions& options, const Globals& globals) 
 
   print_left_out(*pending);
   if (pending->unchanged > 0) fmt::print("{} unchanged\n", pending->unchanged);
-  if (pending->goldens.empty()) return exit_ok;
+  if (pending->goldens.size() == 0) return exit_ok;
   const bool wanted = confirmed(options, pending->goldens.size());
   if (auto go_on = check_not_interrupted(); !go_on) return tl::unexpected(go_on.error());
   if (!wanted) {
@@ -187,8 +186,8 @@ int bless_command(const BlessOptions& options, const Globals& globals) {
   }
   if (!options.select.excludes.empty()) {
     return report_error(
-        {"bless replaces the goldens of a case file for all its profiles and rates; select with "
-         "--filter or --group instead of --exclude"});
+        {"bless replaces the golden of a case at all its rates; select with --filter, --group or "
+         "--profile instead of --exclude"});
   }
   if (!options.yes && !::isatty(STDIN_FILENO)) {
     return report_error(

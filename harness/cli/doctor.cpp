@@ -55,9 +55,10 @@ void examine_cases(const SuiteFolder& suite, Examination& examination) {
   if (!cases) return examination.bad("cases", cases.error().to_string());
   std::size_t vectors = 0;
   std::vector<std::string> stale;
+  const Goldens goldens(suite.golden());
   for (const auto& [the_case, configurations] : *cases) {
     vectors += configurations.size();
-    if (const auto golden = Golden::open(suite.golden(), the_case); !golden) {
+    if (const auto golden = goldens.open(the_case); !golden) {
       stale.push_back(golden.error().to_string());
     }
   }

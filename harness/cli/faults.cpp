@@ -139,10 +139,12 @@ Result<int> measure(const FaultOptions& options, const SuiteFolder& suite,
     if (!parsed) return tl::unexpected(parsed.error());
     level = *parsed;
   }
+  const Goldens goldens(suite.golden());
+  goldens.origins_of(profile);  // read here, so that the workers have them
   Jobs<FaultCatch> jobs;
   for (const Fault* fault : faults) {
-    jobs.push_back(std::make_unique<FaultJob>(*fault, profile, *cases, suite.golden(),
-                                              options.fraction_bits, level));
+    jobs.push_back(
+        std::make_unique<FaultJob>(*fault, profile, *cases, goldens, options.fraction_bits, level));
   }
   JobOptions<FaultCatch> workers;
   workers.processes = options.jobs;

@@ -173,8 +173,8 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
   if (auto checked = check_recorded(*cases, plan); !checked) return checked;
   VehicleModels vehicle_models(suite.models());
   auto jobs =
-      case_jobs(*cases, suite.golden(), vehicle_models,
-                {plan.run.level, options.save_traces, plan.run.parameters, plan.suite}, plan.host);
+      case_jobs(*cases, std::make_shared<const Goldens>(suite.golden(), plan.suite), vehicle_models,
+                {plan.run.level, options.save_traces, plan.run.parameters}, plan.host);
   if (!jobs) return tl::unexpected(jobs.error());
   plan.jobs = *std::move(jobs);
   plan.run.selection = options.select.narrowing();

@@ -55,19 +55,31 @@ Result<SuiteFolder> named(const fs::path& folder, const char* by) {
                                               by));
 }
 
-// For each TOML file below `folder`, except in golden/recorded: adds its path relative to the suite
-// `root`, and the file.
-Result<void> add_files(const fs::path& root, const fs::path& folder,
-                       std::map<std::string, fs::path>& files) {
+// Adds the case files below `folder`, with their paths from the folder that it is in.
+Result<void> add_cases(const fs::path& folder, std::map<std::string, fs::path>& files) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) return {};  // a run reports the missing folder
+  const std::size_t prefix = folder.native().size();
   for (auto at = fs::recursive_directory_iterator(folder, error);
        at != fs::recursive_directory_iterator(); at.increment(error)) {
-    if (at->path() == root / "golden" / "recorded") at.disable_recursion_pending();
-    if (at->path().extension() != ".toml") continue;
-    files[at->path().lexically_relative(root)] = at->path();
+    const std::string& path = at->path().native();
+    if (path.ends_with(".toml")) files["cases" + path.substr(prefix)] = at->path();
   }
   if (error) return fail_at(folder.string(), error.message());
+  return {};
+}
+
+// Adds the origins of the goldens: the hashes in them cover the goldens.
+Result<void> add_origins(const fs::path& golden, std::map<std::string, fs::path>& files) {
+  std::error_code error;
+  if (!fs::is_directory(golden, error)) return {};
+  for (const auto& profile : fs::directory_iterator(golden, error)) {
+    const fs::path file = profile.path() / "provenance.toml";
+    std::error_code ignored;
+    if (!fs::exists(file, ignored)) continue;
+    files[fmt::format("golden/{}/provenance.toml", profile.path().filename().string())] = file;
+  }
+  if (error) return fail_at(golden.string(), error.message());
   return {};
 }
 
@@ -125,13 +137,12 @@ VectorsByGroup SuiteFolder::vectors_by_group() const {
 Result<SuiteHash> SuiteFolder::hash() const {
   std::map<std::string, fs::path> files;
   if (base) {
-    if (auto added = add_files(*base, *base / "cases", files); !added) {
+    if (auto added = add_cases(*base / "cases", files); !added) {
       return tl::unexpected(added.error());
     }
   }
-  for (const fs::path& folder : {cases(), golden()}) {
-    if (auto added = add_files(root, folder, files); !added) return tl::unexpected(added.error());
-  }
+  if (auto added = add_cases(cases(), files); !added) return tl::unexpected(added.error());
+  if (auto added = add_origins(golden(), files); !added) return tl::unexpected(added.error());
   SuiteHash suite;
   std::string lines;
   for (const auto& [path, file] : files) {

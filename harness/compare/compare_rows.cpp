@@ -50,7 +50,9 @@ Rows rows_of(const Trace& flown, const Trace& golden, double horizon_s) {
     }
     rows.ticks.push_back(tick);
     rows.got.samples.push_back(flown.samples[tick]);
-    rows.want.samples.push_back(sample);
+    // The inputs decide how wide a tolerance is. Those of the golden are not stored.
+    rows.want.samples.push_back(flown.samples[tick]);
+    rows.want.samples.back().copy_outputs(sample);
     // A row holds the setpoint in force, which may have been published at an earlier tick.
     rows.want.samples.back().in.updated |= ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT;
   }

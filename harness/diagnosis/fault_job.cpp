@@ -69,7 +69,7 @@ Result<FaultCatch> FaultJob::run(std::size_t) {
   const Case* opened = nullptr;
   for (const auto& [the_case, rate, turn] : attempts(cases_, fault_.group)) {
     if (opened != the_case) {
-      auto next = Golden::open(golden_root_, *the_case);
+      auto next = goldens_.open(*the_case);
       if (!next) return tl::unexpected(next.error());
       golden.emplace(std::move(*next));
       opened = the_case;

@@ -12,6 +12,7 @@
 #include "controller/faults/fault.hpp"
 #include "harness/casefile/select.hpp"
 #include "harness/compare/tolerance.hpp"
+#include "harness/golden/golden.hpp"
 #include "harness/verify/verdict.hpp"
 #include "harness/workers/job.hpp"
 
@@ -34,14 +35,14 @@ struct Codec<FaultCatch> {
 
 class FaultJob final : public Job<FaultCatch> {
  public:
-  // REQUIRES: each case is an open-loop case of `profile`; `cases` outlives this.
+  // REQUIRES: each case is an open-loop case of `profile`; `cases` and `goldens` outlive this.
   FaultJob(const faults::Fault& fault, std::string profile, const std::vector<SelectedCase>& cases,
-           std::filesystem::path golden_root, std::optional<int> fraction_bits,
+           const Goldens& goldens, std::optional<int> fraction_bits,
            std::optional<Level> level = {})
       : fault_(fault),
         profile_(std::move(profile)),
         cases_(cases),
-        golden_root_(std::move(golden_root)),
+        goldens_(goldens),
         fraction_bits_(fraction_bits),
         level_(level) {}
 
@@ -57,7 +58,7 @@ class FaultJob final : public Job<FaultCatch> {
   const faults::Fault& fault_;
   std::string profile_;
   const std::vector<SelectedCase>& cases_;
-  std::filesystem::path golden_root_;
+  const Goldens& goldens_;
   std::optional<int> fraction_bits_;  // if set, the fault is judged as a port in fixed point
   std::optional<Level> level_;
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <system_error>
 
 #include <fmt/format.h>
 
@@ -32,12 +31,10 @@ double deviation(double a, double b) {
   return std::isnan(difference) ? HUGE_VAL : difference;
 }
 
-// Compares every channel, inputs included, at the ticks that both traces have. Each further tick
-// counts as changed.
+// REQUIRES: traces of the same ticks.
 Change change_between(const Trace& old_trace, const Trace& new_trace) {
   Change change;
-  const std::size_t common = std::min(old_trace.samples.size(), new_trace.samples.size());
-  for (std::size_t tick = 0; tick < common; ++tick) {
+  for (std::size_t tick = 0; tick < new_trace.samples.size(); ++tick) {
     bool differs = false;
     for (std::size_t i = 0; i < channels().size(); ++i) {
       if (!old_trace.present[i] && !new_trace.present[i]) continue;
@@ -53,30 +50,7 @@ Change change_between(const Trace& old_trace, const Trace& new_trace) {
     }
     change.ticks += differs ? 1 : 0;
   }
-  change.ticks += std::max(old_trace.samples.size(), new_trace.samples.size()) - common;
   return change;
-}
-
-// The entries of a provenance about flights, in addition to their traces.
-struct Measured {
-  std::map<std::string, double> horizon_s, metrics;
-  std::map<std::string, std::string> models;
-
-  bool operator==(const Measured&) const = default;
-};
-
-Measured measured_in(const MadeGolden& made) {
-  Measured all;
-  for (const GoldenTrace& trace : made.traces) {
-    if (trace.horizon_s) all.horizon_s[trace.configuration.label()] = *trace.horizon_s;
-    for (const auto& [metric, value] : trace.metrics) {
-      all.metrics[metric_key(trace.configuration, metric)] = value;
-    }
-  }
-  for (const auto& file : made.vehicle_files) {
-    all.models[file.filename().string()] = sha256_of_file(file).value_or("");
-  }
-  return all;
 }
 
 // The sum of the changes of all traces of a case.
@@ -112,12 +86,21 @@ class Changes {
   Change total_;
 };
 
-Changes changes_of(const Golden& golden, const std::vector<GoldenTrace>& traces) {
+const GoldenTrace* trace_of(const std::vector<GoldenTrace>& traces, const std::string& label) {
+  for (const GoldenTrace& trace : traces) {
+    const auto& all = trace.configurations;
+    if (std::find(all.begin(), all.end(), label) != all.end()) return &trace;
+  }
+  return nullptr;
+}
+
+Changes changes_of(const std::vector<GoldenTrace>& old_traces,
+                   const std::vector<GoldenTrace>& traces) {
   Changes changes;
   for (const GoldenTrace& made : traces) {
-    const auto old_trace = golden.read(made.configuration);
-    if (old_trace) {
-      changes.add(*old_trace, made.trace);
+    const GoldenTrace* const old_trace = trace_of(old_traces, made.configurations.front());
+    if (old_trace != nullptr && old_trace->ticks == made.ticks) {
+      changes.add(old_trace->outputs, made.outputs);
     } else {
       changes.add_replaced();
     }
@@ -125,37 +108,57 @@ Changes changes_of(const Golden& golden, const std::vector<GoldenTrace>& traces)
   return changes;
 }
 
+// Whether the old golden has the same horizons and metrics.
+bool measures_the_same(const std::vector<GoldenTrace>& old_traces,
+                       const std::vector<GoldenTrace>& traces) {
+  return std::all_of(traces.begin(), traces.end(), [&](const GoldenTrace& made) {
+    const GoldenTrace* const old_trace = trace_of(old_traces, made.configurations.front());
+    return old_trace != nullptr && old_trace->horizon_s == made.horizon_s &&
+           old_trace->metrics == made.metrics;
+  });
+}
+
+bool has_other_vehicles(const GoldenOrigin& origin, const MadeGolden& made) {
+  std::map<std::string, std::string> models;
+  for (const auto& file : made.vehicle_files) {
+    models[file.filename().string()] = sha256_of_file(file).value_or("");
+  }
+  return models != origin.models;
+}
+
 }  // namespace
 
-std::string change_of_golden(const Case& the_case, const MadeGolden& made,
-                             const std::filesystem::path& golden_root) {
-  Case as_blessed = the_case;
-  const auto path = golden_folder(golden_root, the_case) / provenance_name;
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) {
+Result<std::string> change_of_golden(const Case& the_case, const MadeGolden& made,
+                                     const Goldens& goldens) {
+  const auto& origins = goldens.origins_of(the_case.profile);
+  if (!origins) return tl::unexpected(origins.error());
+  const auto origin = origins->find(the_case.group + "/" + the_case.name);
+  if (origin == origins->end()) {
     return fmt::format("{}: new, {} traces", the_case.id(), made.traces.size());
   }
-  const auto provenance = read_provenance(path);
-  if (!provenance) {
-    return fmt::format("{}: replaced; {}", the_case.id(), provenance.error().to_string());
-  }
-  as_blessed.sha256 = provenance->case_sha256;  // another version of the case file is no error here
-  const auto golden = Golden::open(golden_root, as_blessed);
+  Case as_blessed = the_case;  // another version of the case file is no error here
+  as_blessed.sha256 = origin->second.case_sha256;
+  const auto golden = goldens.open(as_blessed);
   if (!golden) return fmt::format("{}: replaced; {}", the_case.id(), golden.error().to_string());
 
-  const Changes changes = changes_of(*golden, made.traces);
+  const Changes changes = changes_of(golden->traces(), made.traces);
   if (!changes.empty()) {
     return fmt::format("{}: {}", the_case.id(), changes.to_string(made.traces.size()));
   }
-  if (provenance->case_sha256 != the_case.sha256) {
-    return fmt::format("{}: no value changes, the case file did", the_case.id());
+  const auto no_value_changes = [&](const char* what_does) {
+    return fmt::format("{}: no value changes, {}", the_case.id(), what_does);
+  };
+  if (golden->origin().case_sha256 != the_case.sha256) {
+    return no_value_changes("the case file did");
   }
-  const Measured before{provenance->horizon_s, provenance->metrics, provenance->models};
-  const Measured now = measured_in(made);
-  if (before == now) return "";
-  return fmt::format(
-      "{}: no value changes, {}", the_case.id(),
-      before.models == now.models ? "horizons or metrics did" : "the vehicle's files did");
+  if (has_other_vehicles(golden->origin(), made)) {
+    return no_value_changes("the vehicle's files did");
+  }
+  if (!measures_the_same(golden->traces(), made.traces)) {
+    return no_value_changes("horizons or metrics did");
+  }
+  if (golden->origin().inputs != made.inputs) return no_value_changes("the inputs did");
+  return std::string();
 }
 
 }  // namespace attest

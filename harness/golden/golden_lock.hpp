@@ -11,11 +11,9 @@ namespace attest {
 // golden root. The kernel releases it when the process ends in any way.
 class GoldenLock {
  public:
-  // Makes the root if necessary. Removes the folders `*.new` of a killed process. A folder `*.old`
-  // is a golden that the killed process moved away: moves it back to its place, or removes it if
-  // the place has a golden. Does not wait, because the process that holds the lock may be waiting
-  // for its user. Errors: another process holds the lock; the root or a folder in it cannot be
-  // written.
+  // Makes the root if necessary. Ends what a killed bless has begun (finish_killed_bless()). Does
+  // not wait, because the process that holds the lock may be waiting for its user. Errors: another
+  // process holds the lock; the root cannot be made; those of finish_killed_bless().
   static Result<GoldenLock> take(const std::filesystem::path& golden_root);
 
   GoldenLock(GoldenLock&& other) noexcept;

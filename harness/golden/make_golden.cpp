@@ -1,5 +1,6 @@
 #include "harness/golden/make_golden.hpp"
 
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "harness/golden/reference_flight.hpp"
 #include "harness/host/in_process_host.hpp"
 #include "harness/port/builtin.hpp"
+#include "harness/recording/manifest.hpp"
 
 namespace attest {
 namespace {
@@ -19,25 +21,55 @@ bool does_not_have_it(const PortFault& fault) {
   return fault.kind == PortFault::Kind::unsupported || fault.kind == PortFault::Kind::profile;
 }
 
-// Empty if the reference is a port that does not support the case; `left_out` is then the reason.
-Result<std::optional<GoldenTrace>> open_loop_trace(const Case& the_case,
-                                                   const RunConfiguration& configuration,
-                                                   Reference& reference, std::string& left_out) {
+// The outputs of a trace at some ticks. `extra`: further channels that are kept.
+GoldenTrace kept(const Trace& trace, std::vector<std::size_t> ticks,
+                 const RunConfiguration& configuration, const ChannelSet& extra = {}) {
+  GoldenTrace golden{{configuration.label()}, std::move(ticks), {}};
+  golden.outputs.present = trace.present & (channels_of(module_of(trace.present), "out/") | extra);
+  for (const std::size_t tick : golden.ticks) {
+    golden.outputs.samples.push_back(trace.samples[tick]);
+  }
+  return golden;
+}
+
+std::vector<std::size_t> every_tick(const Trace& trace) {
+  std::vector<std::size_t> ticks(trace.samples.size());
+  std::iota(ticks.begin(), ticks.end(), std::size_t{0});
+  return ticks;
+}
+
+// Adds the trace of an open-loop vector. If the reference is a port that does not support the case,
+// sets `made.left_out` instead.
+Result<void> add_open_loop(const Case& the_case, const RunConfiguration& configuration,
+                           Reference& reference, MadeGolden& made) {
   Trace trace = stimulate(the_case, configuration.rate.unit);
+  const std::string inputs = reference.is_own() ? "" : sha256_of_inputs(trace);
   if (const auto fault = reference.drive(subject_of(the_case), trace)) {
     if (!reference.is_own() && does_not_have_it(*fault)) {
-      left_out = fault->what;
-      return std::nullopt;
+      made.left_out = fault->what;
+      return {};
     }
     return fail_at(
         the_case.file.string(),
         fmt::format("the reference, at {} Hz: {}", configuration.rate.to_string(), fault->what));
   }
-  GoldenTrace golden{configuration, std::move(trace)};
-  if (!reference.is_own()) return golden;
-  golden.is_whole = keeps_every_tick(golden.trace.samples.size());
-  if (!golden.is_whole) golden.trace = keyframes_of(golden.trace);
-  return golden;
+  if (!inputs.empty()) made.inputs[configuration.label()] = inputs;
+  const bool is_whole = !reference.is_own() || keeps_every_tick(trace.samples.size());
+  made.traces.push_back(
+      kept(trace, is_whole ? every_tick(trace) : keyframes_of(trace), configuration));
+  return {};
+}
+
+Result<void> add_flight(const Case& the_case, const RunConfiguration& configuration,
+                        const VehicleModel& vehicle_model, MadeGolden& made) {
+  auto flight = reference_flight(the_case, configuration, vehicle_model);
+  if (!flight) return tl::unexpected(flight.error());
+  GoldenTrace trace = kept(flight->rows, keyframes_of(flight->rows), configuration,
+                           ChannelSet().set(timestamp_channel));
+  trace.horizon_s = flight->horizon_s;
+  trace.metrics = std::move(flight->metrics);
+  made.traces.push_back(std::move(trace));
+  return {};
 }
 
 }  // namespace
@@ -78,18 +110,15 @@ Result<MadeGolden> make_golden(const Case& the_case, Reference& reference,
   for (const RunConfiguration& configuration : the_case.configurations()) {
     if (stop()) return fail("interrupted");
     if (!configuration.plant_configuration) {
-      auto trace = open_loop_trace(the_case, configuration, reference, made.left_out);
-      if (!trace) return tl::unexpected(trace.error());
-      if (!*trace) return made;
-      made.traces.push_back(**std::move(trace));
+      auto added = add_open_loop(the_case, configuration, reference, made);
+      if (!added) return tl::unexpected(added.error());
+      if (!made.left_out.empty()) return made;
       continue;
     }
     const auto vehicle_model = vehicle_models.get(configuration.plant_configuration->vehicle);
     if (!vehicle_model) return tl::unexpected(vehicle_model.error());
-    auto flight = reference_flight(the_case, configuration, **vehicle_model);
-    if (!flight) return tl::unexpected(flight.error());
-    made.traces.push_back({configuration, std::move(flight->rows), false, flight->horizon_s,
-                           std::move(flight->metrics)});
+    auto added = add_flight(the_case, configuration, **vehicle_model, made);
+    if (!added) return tl::unexpected(added.error());
     for (auto& file : (*vehicle_model)->vehicle().files()) files.insert(std::move(file));
   }
   made.vehicle_files.assign(files.begin(), files.end());

@@ -1,13 +1,10 @@
-// The content of a golden: the outputs of the reference for a case.
+// Makes the content of a golden: the outputs of the reference for a case.
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <memory>
-#include <string>
-#include <vector>
 
-#include "harness/golden/golden.hpp"
+#include "harness/golden/new_goldens.hpp"
 #include "harness/host/port_process.hpp"
 #include "harness/plant/vehicle_models.hpp"
 
@@ -30,12 +27,6 @@ class Reference {
 
   std::unique_ptr<PortHost> host_;
   std::unique_ptr<PortHost> again_;  // of a port: a second process
-};
-
-struct MadeGolden {
-  std::vector<GoldenTrace> traces;  // one for each of the case's configurations, in that order
-  std::vector<std::filesystem::path> vehicle_files;  // on which its flights depend
-  std::string left_out = {};  // why there is no golden of this case; empty if there is one
 };
 
 // The golden of a port keeps every tick. A port gets no goldens of flights, because flights are

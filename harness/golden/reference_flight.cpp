@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "harness/compare/compare.hpp"
-#include "harness/golden/keyframes.hpp"
 #include "harness/loop/case_timing.hpp"
 #include "harness/loop/flight.hpp"
 #include "harness/port/builtin.hpp"
@@ -37,8 +36,7 @@ double seconds_between(const Sample& first, const Sample& other) {
 }
 
 double horizon_s(const Trace& flown, const Trace& in_double, const Case& the_case) {
-  Tolerances tolerances;
-  for (const auto& [prefix, tolerance] : the_case.tolerances) tolerances.set(prefix, tolerance);
+  const auto tolerances = tolerances_of(the_case, Level::numeric, {}, flown.samples.size());
   const auto parted = compare(in_double, flown, tolerances.scaled(part_of_tolerance)).first;
   const Sample& end = parted ? flown.samples[parted->tick] : flown.samples.back();
   return seconds_between(flown.samples.front(), end);
@@ -81,7 +79,6 @@ Result<ReferenceFlight> reference_flight(const Case& the_case,
                                  metric.min, metric.max));
     }
   }
-  flight->rows = keyframes_of(flight->rows);
   return flight;
 }
 

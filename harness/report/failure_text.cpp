@@ -217,8 +217,7 @@ std::string failure_text(const VectorResult& result, const RunResult& run) {
     out += fmt::format("  case:      {}\n", one_line(file->second));
   if (result.first && run.command == "run" && run.timing.empty()) {
     out +=
-        fmt::format("  golden:    {}\n", one_line(fmt::format("{}/{}/{}.csv", run.golden_folder, id,
-                                                              result.configuration().label())));
+        fmt::format("  golden:    {}\n", one_line(fmt::format("{}/{}.csv", run.golden_folder, id)));
   }
   out += "  reproduce: " + reproduce_command(result, run);
   if (result.plant_configuration && run.timing.empty())

@@ -85,6 +85,12 @@ std::string subject_of(const RunResult& run) {
   if (run.limits.own_process && !missing.empty()) {
     out += fmt::format("; this kernel has no barrier for {}", fmt::join(missing, ", "));
   }
+  const auto by_golden = std::count_if(run.results.begin(), run.results.end(),
+                                       [](const VectorResult& one) { return one.by_golden; });
+  if (by_golden > 0) {
+    out += fmt::format("; the golden's values judged {}, because the reference has other bits here",
+                       counted(static_cast<std::size_t>(by_golden), "vector"));
+  }
   return out;
 }
 

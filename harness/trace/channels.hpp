@@ -80,6 +80,7 @@ struct Channel {
 // All channels in column order: timestamp, then for each module its inputs, its in/updated bits and
 // its outputs.
 std::span<const Channel> channels();
+inline constexpr std::size_t timestamp_channel = 0;  // index into channels()
 inline constexpr std::size_t max_channels = 212;
 using ChannelSet = std::bitset<max_channels>;  // by index into channels()
 

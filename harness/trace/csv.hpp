@@ -9,16 +9,11 @@
 // Other programs may write a trace to be replayed (TraceNeed::inputs_and_outputs). Its unknown
 // columns are ignored, too, with one exception: a name that begins with in/ or out/, or resembles a
 // channel's name, is an error. PX4's out/actuator_controls_status.* is ignored.
-//
-// If there is a provenance.toml in the folder of the file, its constants count as columns, too, and
-// must not be columns of the file. If the provenance names a base, the columns that the file lacks
-// are read from there (provenance.hpp).
 #pragma once
 
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "harness/core/file.hpp"
@@ -28,37 +23,21 @@
 
 namespace attest {
 
-struct Provenance;  // provenance.hpp includes this header
-
-// A trace whose files were read before. A caller that checks the hash of a file uses it, so that
-// the bytes that are parsed are those that were hashed.
-struct TraceText {
-  std::filesystem::path file;  // for messages
-  std::string_view text;
-  const Provenance& provenance;  // of the file's folder
-};
-
-// Reads the whole trace, from a pipe too, with the constants of a provenance.toml in the same
-// folder. A file with a column of mixer traces (mixer_csv.hpp) has all channels in its columns, so
-// `need` and the constants do not apply; its timestamps count the rows from 0. Parameter columns
-// become changes. At tick 0 all are changes, after those of the constants. Later, at each
-// tick with in/updated.parameter_update, a value that differs from the one last set is a change (by
-// bits, NaN = NaN). A trace with a base has the parameters of the base. Errors, each as
-// file:line:column with what to do: unreadable file, no header, unknown or repeated column, missing
-// channel, short or long row, a cell that is not a number of its channel's type, timestamps that do
-// not increase, no rows, a wrong provenance.toml or base; those of RereadableFile::open().
+// Reads the whole trace, from a pipe too. A file with a column of mixer traces (mixer_csv.hpp) has
+// all channels in its columns, so `need` does not apply; its timestamps count the rows from 0.
+// Parameter columns become changes. At tick 0 all are changes. Later, at each tick with
+// in/updated.parameter_update, a value that differs from the one last set is a change (by bits,
+// NaN = NaN). Errors, each as file:line:column with what to do: unreadable file, no header, unknown
+// or repeated column, missing channel, short or long row, a cell that is not a number of its
+// channel's type, timestamps that do not increase, no rows; a golden, which is no trace; those of
+// RereadableFile::open().
 Result<Trace> read_csv(const std::filesystem::path& path, TraceNeed need);
-
-// The same without access to files. `base`: the trace of the same name in the folder that
-// Provenance::base names; null if the provenance names none.
-Result<Trace> parse_csv(const TraceText& trace, const TraceText* base, TraceNeed need);
 
 // Reads a trace tick by tick, in memory that does not grow with the length of the trace. But the
 // content of a pipe is kept in memory.
 class TraceReader final : public TraceParts {
  public:
   static Result<TraceReader> open(const std::filesystem::path& path, TraceNeed need);
-  static Result<TraceReader> open(const TraceText& trace, const TraceText* base, TraceNeed need);
   TraceReader(TraceReader&&) noexcept;
   ~TraceReader() override;
 
@@ -71,7 +50,7 @@ class TraceReader final : public TraceParts {
   Result<bool> next(Sample& sample, std::vector<ParameterChange>& changes);
 
   Result<void> next_part(std::size_t most, Trace& part) override;
-  Result<void> rewind() override;  // REQUIRES: opened with a path
+  Result<void> rewind() override;
 
  private:
   struct Impl;

@@ -64,6 +64,7 @@ std::string cell_error(std::string_view cell, CellType type, std::string_view co
       return fmt::format("{} is not a bit for {}; write 0 or 1", shown, column);
     case CellType::f32:
     case CellType::f64:
+    case CellType::text:
     case CellType::ignored:
       break;
   }

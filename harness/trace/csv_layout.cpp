@@ -7,7 +7,6 @@
 
 #include "harness/core/suggestion.hpp"
 #include "harness/trace/plant_columns.hpp"
-#include "harness/trace/provenance.hpp"
 
 namespace attest {
 namespace {
@@ -32,6 +31,12 @@ bool may_be_ignored(std::string_view name, const CsvRows& rows, const std::strin
 }  // namespace
 
 Result<CsvLayout> layout_of(const CsvRows& rows, Module module, TraceNeed need) {
+  if (rows.header().front() == "configurations") {
+    return fail_at(rows.file(),
+                   "is a golden, which has no inputs, and no trace; `attest vectors DIR` writes "
+                   "the inputs, and `attest run` compares a port with the golden",
+                   1, 1);
+  }
   CsvLayout layout;
   for (std::size_t i = 0; i < rows.header().size(); ++i) {
     const std::string_view name = rows.header()[i];
@@ -76,11 +81,7 @@ Result<void> check_need(const ChannelSet& present, TraceNeed need, const std::st
   const ChannelSet absent = channels_of(module, "in/") & ~present;
   if (need != TraceNeed::outputs && absent.any()) {
     const std::string_view name = channels()[absent._Find_first()].name;
-    return missing(
-        name, absent.count() - 1,
-        fmt::format("add the column, or an entry \"{}\" under [constants] in a {} next to "
-                    "the file",
-                    name, provenance_name));
+    return missing(name, absent.count() - 1, "add the column");
   }
   if (need != TraceNeed::inputs && (present & channels_of(module, "out/")).none()) {
     return missing("out/...", 0, "add at least one output of the unit");

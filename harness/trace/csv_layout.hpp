@@ -11,8 +11,6 @@
 
 namespace attest {
 
-inline constexpr std::size_t timestamp_channel = 0;  // of channels()
-
 // A row in memory is a Sample and the values of the parameter columns.
 inline constexpr std::size_t parameters_offset = sizeof(Sample);
 

@@ -72,6 +72,7 @@ Result<CsvRows> CsvRows::of(std::string_view text, const std::filesystem::path& 
   std::copy(text.begin(), text.end(), rows.buffer_.get());
   rows.end_ = text.size();
   rows.at_end_of_file_ = true;
+  rows.empty_repeats_ = true;
   if (const auto done = rows.read_header(Unnamed::refused); !done) {
     return tl::unexpected(done.error());
   }
@@ -185,8 +186,10 @@ bool CsvRows::parse_line(char* row) const {
   const char* first = line_.data();
   const char* const last = first + line_.size();
   const CsvColumn* const back = &columns_.back();
+  const bool repeats = empty_repeats_ && line_.front() == ',';
   for (const CsvColumn& column : columns_) {
-    const char* const end = parse_cell(first, last, column, row);
+    const bool is_repeated = repeats && (first == last || *first == ',');
+    const char* const end = is_repeated ? first : parse_cell(first, last, column, row);
     if (end == nullptr) return false;
     if (&column == back) return end == last;
     if (end == last || *end != ',') return false;

@@ -37,7 +37,9 @@ class CsvRows {
   enum class Unnamed { refused, allowed };
   static Result<CsvRows> open(const std::filesystem::path& path, Unnamed unnamed = Unnamed::refused,
                               std::string name = {});
-  // The same for a file that was read before: `text` has its bytes, which are copied.
+  // The same for a file that was read before: `text` has its bytes, which are copied. A row whose
+  // first cell is empty may then have more empty cells: each keeps the value of the row above, so
+  // next() needs the same `row` again.
   static Result<CsvRows> of(std::string_view text, const std::filesystem::path& path);
 
   // For a caller that keeps all rows in memory. Errors: the file is larger than most_csv_bytes now,
@@ -82,7 +84,8 @@ class CsvRows {
   std::size_t begin_ = 0;                     // of the unread text in buffer_
   std::size_t end_ = 0;
   bool at_end_of_file_ = false;
-  std::uintmax_t unread_ = 0;  // bytes of the file that are not yet in buffer_
+  bool empty_repeats_ = false;  // an empty cell has the value of the one above
+  std::uintmax_t unread_ = 0;   // bytes of the file that are not yet in buffer_
   std::uintmax_t bytes_left_ = std::numeric_limits<std::uintmax_t>::max();
 
   std::string_view line_;  // the line last read, without its end

@@ -10,6 +10,18 @@ void CsvText::name(std::string_view text) {
   append(text);
 }
 
+void CsvText::value_of(const Channel& channel, const Sample& sample) {
+  switch (channel.type) {
+    case ChannelType::f32:
+      return number(float_of(channel, sample));
+    case ChannelType::u64:
+      return integer(integer_of(channel, sample));
+    case ChannelType::u8:
+    case ChannelType::bit:
+      return integer(static_cast<std::uint64_t>(attest::value_of(channel, sample)));
+  }
+}
+
 void CsvText::end_row() {
   append("\n");
   is_first_in_row_ = true;

@@ -9,6 +9,7 @@
 
 #include "harness/core/file.hpp"
 #include "harness/core/result.hpp"
+#include "harness/trace/channels.hpp"
 
 namespace attest {
 
@@ -21,19 +22,23 @@ class CsvText {
   void name(std::string_view text);
   // The shortest decimal that reads back to the same bits; `nan` for every NaN.
   void number(float value);
+  void number(double value);
   void integer(std::uint64_t value);
+  void value_of(const Channel& channel, const Sample& sample);
   void end_row();
 
   // Writes the rest. Returns the first error of all writes.
   Result<void> finish();
 
  private:
-  // Longer than any number: 20 digits of a u64.
+  // Longer than any number: a double has up to 24 characters, a u64 has 20 digits.
   static constexpr std::size_t longest_number = 32;
 
   // Returns where the cell starts, with room for a number. The caller writes the cell and passes
   // its end to end_cell().
   char* begin_cell();
+  template <typename Number>
+  void finite_or_nan(Number value);
   void end_cell(const char* end) { used_ = static_cast<std::size_t>(end - block_.data()); }
   void append(std::string_view text);
   void flush();
@@ -55,7 +60,8 @@ inline char* CsvText::begin_cell() {
   return at;
 }
 
-inline void CsvText::number(float value) {
+template <typename Number>
+void CsvText::finite_or_nan(Number value) {
   char* const first = begin_cell();
   // to_chars would write the sign of a NaN.
   if (value != value) {
@@ -64,6 +70,9 @@ inline void CsvText::number(float value) {
   }
   end_cell(std::to_chars(first, first + longest_number, value).ptr);
 }
+
+inline void CsvText::number(float value) { finite_or_nan(value); }
+inline void CsvText::number(double value) { finite_or_nan(value); }
 
 inline void CsvText::integer(std::uint64_t value) {
   char* const first = begin_cell();

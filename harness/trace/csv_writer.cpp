@@ -39,18 +39,6 @@ Result<void> check_changes(const Trace& trace, const std::string& parameter) {
   return {};
 }
 
-void write_cell(const Channel& channel, const Sample& sample, CsvText& text) {
-  switch (channel.type) {
-    case ChannelType::f32:
-      return text.number(float_of(channel, sample));
-    case ChannelType::u64:
-      return text.integer(integer_of(channel, sample));
-    case ChannelType::u8:
-    case ChannelType::bit:
-      return text.integer(static_cast<std::uint64_t>(value_of(channel, sample)));
-  }
-}
-
 std::vector<const Channel*> chosen(const ChannelSet& set, bool outputs) {
   std::vector<const Channel*> list;
   for (std::size_t i = 0; i < channels().size(); ++i) {
@@ -96,9 +84,9 @@ Result<void> write_csv(AtomicFile file, const Trace& trace, const CsvColumns& co
   ParameterValues parameters(trace, columns.parameters);
   for (std::size_t tick = 0; tick < trace.samples.size(); ++tick) {
     const Sample& sample = trace.samples[tick];
-    for (const Channel* channel : inputs) write_cell(*channel, sample, text);
+    for (const Channel* channel : inputs) text.value_of(*channel, sample);
     for (const float value : parameters.at(tick)) text.number(value);
-    for (const Channel* channel : outputs) write_cell(*channel, sample, text);
+    for (const Channel* channel : outputs) text.value_of(*channel, sample);
     if (columns.plant) {
       for (const PlantColumn& column : plant_columns()) {
         text.number(column.value(trace.plant[tick]));

@@ -21,10 +21,10 @@ Result<VectorResult> Codec<VectorResult>::decode(const std::string& text) {
 
 CaseJob::CaseJob(const std::vector<SelectedCase>& cases,
                  std::shared_ptr<const VehicleModel> vehicle_model,
-                 std::filesystem::path golden_root, JudgeOptions judge, HostOptions options)
+                 std::shared_ptr<const Goldens> goldens, JudgeOptions judge, HostOptions options)
     : PortJob(std::move(options)),
       vehicle_model_(std::move(vehicle_model)),
-      golden_root_(std::move(golden_root)),
+      goldens_(std::move(goldens)),
       judge_(std::move(judge)) {
   for (const SelectedCase& selected : cases) {
     const auto the_case = std::make_shared<const Case>(selected.the_case);
@@ -84,7 +84,7 @@ Result<VectorResult> CaseJob::repeated_alone(const Vector& vector, VectorResult 
 
 Result<void> CaseJob::open_golden(const Vector& vector) {
   if (golden_of_ == vector.the_case) return {};
-  auto golden = Golden::open(golden_root_, *vector.the_case, judge_.suite.get());
+  auto golden = goldens_->open(*vector.the_case);
   if (!golden) return tl::unexpected(golden.error());
   golden_.emplace(*std::move(golden));
   golden_of_ = vector.the_case;
@@ -155,10 +155,12 @@ std::vector<CasesOfJob> cases_of_jobs(const std::vector<SelectedCase>& cases) {
 }  // namespace
 
 Result<Jobs<VectorResult>> case_jobs(const std::vector<SelectedCase>& cases,
-                                     const std::filesystem::path& golden_root,
+                                     std::shared_ptr<const Goldens> goldens,
                                      VehicleModels& vehicle_models, const JudgeOptions& judge,
                                      const HostOptions& options) {
   Jobs<VectorResult> jobs;
+  // Read here, so that the workers have them.
+  for (const SelectedCase& selected : cases) goldens->origins_of(selected.the_case.profile);
   for (const CasesOfJob& of_job : cases_of_jobs(cases)) {
     std::shared_ptr<const VehicleModel> vehicle_model;
     if (const auto& plant = plant_of(of_job.front())) {
@@ -166,7 +168,7 @@ Result<Jobs<VectorResult>> case_jobs(const std::vector<SelectedCase>& cases,
       if (!loaded) return tl::unexpected(loaded.error());
       vehicle_model = *loaded;
     }
-    jobs.push_back(std::make_unique<CaseJob>(of_job, vehicle_model, golden_root, judge, options));
+    jobs.push_back(std::make_unique<CaseJob>(of_job, vehicle_model, goldens, judge, options));
   }
   return jobs;
 }

@@ -39,7 +39,7 @@ class CaseJob final : public PortJob<VectorResult> {
  public:
   // `vehicle_model` is that of the flights' vehicle; null for open loop.
   CaseJob(const std::vector<SelectedCase>& cases, std::shared_ptr<const VehicleModel> vehicle_model,
-          std::filesystem::path golden_root, JudgeOptions judge, HostOptions options);
+          std::shared_ptr<const Goldens> goldens, JudgeOptions judge, HostOptions options);
 
   std::size_t size() const override { return vectors_.size(); }
   Result<void> open() override;
@@ -60,7 +60,7 @@ class CaseJob final : public PortJob<VectorResult> {
 
   std::vector<Vector> vectors_;
   std::shared_ptr<const VehicleModel> vehicle_model_;
-  std::filesystem::path golden_root_;
+  std::shared_ptr<const Goldens> goldens_;
   JudgeOptions judge_;
   std::unique_ptr<PortHost> host_;
   std::vector<std::string> judged_by_host_;  // ids of vectors
@@ -95,7 +95,7 @@ class TimedJob final : public PortJob<VectorResult> {
 // each plant configuration, so that several workers fly it at the same time. Errors: a vehicle
 // cannot be loaded.
 Result<Jobs<VectorResult>> case_jobs(const std::vector<SelectedCase>& cases,
-                                     const std::filesystem::path& golden_root,
+                                     std::shared_ptr<const Goldens> goldens,
                                      VehicleModels& vehicle_models, const JudgeOptions& judge,
                                      const HostOptions& options);
 

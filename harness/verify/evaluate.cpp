@@ -8,12 +8,9 @@
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/compare/events.hpp"
-#include "harness/golden/keyframes.hpp"
+#include "harness/golden/expected_outputs.hpp"
 #include "harness/golden/recorded.hpp"
-#include "harness/host/in_process_host.hpp"
 #include "harness/loop/open_loop.hpp"
-#include "harness/port/builtin.hpp"
-#include "harness/trace/provenance.hpp"
 #include "harness/verify/fixed_step.hpp"
 #include "harness/verify/judge.hpp"
 #include "harness/verify/saved_traces.hpp"
@@ -65,61 +62,33 @@ void run_uncompared(Trace inputs, const Subject& subject, PortHost& host, Vector
   result.exact_only = true;
 }
 
-struct Prepared {
-  Trace answered;  // inputs only, so far
-  Trace want;
-};
-
-Result<Prepared> prepare(const Case& the_case, const Rate& rate, const Golden& golden) {
-  auto want = golden.read({rate, std::nullopt});
-  if (!want) return tl::unexpected(want.error());
-  Trace made = stimulate(the_case, rate);
-  const bool has_keyframes = want->samples.size() < made.samples.size();
-  if (has_keyframes && !keeps_every_tick(made.samples.size())) {
-    auto whole = filled_in(made, *want, subject_of(the_case), !the_case.numeric_only);
-    if (!whole) return tl::unexpected(whole.error());
-    return Prepared{std::move(made), std::move(*whole)};
+// The expected outputs for inputs that differ from those of the golden: `begun` is the case with
+// the times for a port with a fixed step (fixed_step.hpp), and `parameters` are those of --param.
+// Errors: the reference does not agree with the golden of `the_case`.
+Result<ExpectedOutputs> expected_outputs_of_varied(const Case& the_case, const Case& begun,
+                                                   const Rate& rate, const Golden& golden,
+                                                   const std::vector<ParameterChange>& parameters) {
+  const auto checked = expected_outputs(the_case, rate, golden);
+  if (!checked || golden.is_of_port()) {
+    return fail_at(
+        the_case.file.string(),
+        fmt::format("at {}, the reference of this attest does not agree with the "
+                    "golden, so the expected outputs at other times or with other "
+                    "parameters are not known{}{}",
+                    rate.label(), checked ? "" : ": ", checked ? "" : checked.error().to_string()));
   }
-  if (const ChannelSet missing = made.present & ~want->present; missing.any()) {
-    return fail_at(want->source,
-                   fmt::format("has no {}, neither as a column nor in the {} next to it; bless it "
-                               "anew, or restore it from version control",
-                               channels()[missing._Find_first()].name, provenance_name));
-  }
-  if (const auto tick = first_input_difference(made, *want)) {
-    return fail_at(want->source,
-                   fmt::format("at tick {} the golden's inputs are not those that {} makes; bless "
-                               "it anew, or restore it from version control",
-                               *tick, the_case.file.string()));
-  }
-  return Prepared{std::move(made), std::move(*want)};
+  Trace inputs = stimulate(begun, rate);
+  for (const ParameterChange& parameter : parameters) override_parameter(parameter, inputs);
+  auto outputs = reference_outputs(subject_of(begun), std::move(inputs));
+  if (!outputs) return tl::unexpected(outputs.error());
+  return ExpectedOutputs{*std::move(outputs), checked->is_exact};
 }
 
-// For inputs that differ from those of the golden: `begun` is the case with the times for a port
-// with a fixed step (fixed_step.hpp), and `parameters` are those of --param. The expected outputs
-// are those of the reference. Errors: the reference does not agree with the golden of `the_case`.
-Result<Prepared> prepare_varied(const Case& the_case, const Case& begun, const Rate& rate,
-                                const Golden& golden,
-                                const std::vector<ParameterChange>& parameters) {
-  InProcessHost reference(open_builtin());
-  const auto checked = evaluate_case(the_case, rate, golden, reference, {Level::exact});
-  if (!checked) return tl::unexpected(checked.error());
-  if (checked->verdict != Verdict::pass) {
-    return fail_at(the_case.file.string(),
-                   fmt::format("at {}, the reference of this attest does not agree with the "
-                               "golden, so the expected outputs at other times or with other "
-                               "parameters are not known",
-                               rate.label()));
-  }
-  Prepared prepared{stimulate(begun, rate), {}};
-  for (const ParameterChange& parameter : parameters) {
-    override_parameter(parameter, prepared.answered);
-  }
-  prepared.want = prepared.answered;
-  if (const auto fault = reference.drive(subject_of(begun), prepared.want)) {
-    return fail_at(the_case.file.string(), "the reference: " + fault->what);
-  }
-  return prepared;
+tl::unexpected<Error> other_bits(const Case& the_case, const Rate& rate) {
+  return fail_at(the_case.file.string(),
+                 fmt::format("at {}, the reference has other bits on this machine than the golden, "
+                             "so bits cannot be compared; run at --level numeric",
+                             rate.label()));
 }
 
 // Leaves out the parameters that the subject does not have, or whose value it cannot have.
@@ -165,18 +134,22 @@ Result<VectorResult> evaluate_case(const Case& the_case, const Rate& rate, const
     result.elapsed_s = stopwatch.elapsed_s();
     return result;
   }
-  auto prepared =
-      is_shifted || !parameters.empty()
-          ? prepare_varied(the_case, is_shifted ? the_case.from_one_period_on() : the_case, rate,
-                           golden, parameters)
-          : prepare(the_case, rate, golden);
-  if (!prepared) return tl::unexpected(prepared.error());
+  const auto expected = is_shifted || !parameters.empty()
+                            ? expected_outputs_of_varied(
+                                  the_case, is_shifted ? the_case.from_one_period_on() : the_case,
+                                  rate, golden, parameters)
+                            : expected_outputs(the_case, rate, golden);
+  if (!expected) return tl::unexpected(expected.error());
   const bool numeric_for_exact = level == Level::exact && the_case.numeric_only;
   const bool numeric_for_events = level == Level::events && !has_events(the_case.module);
   if (numeric_for_exact || numeric_for_events) level = Level::numeric;
+  if (level == Level::exact && !expected->is_exact) return other_bits(the_case, rate);
+  result.by_golden = !expected->is_exact;
   const auto bits = host.declarations().fraction_bits;
-  const std::size_t ticks = prepared->answered.samples.size();
-  run_and_judge(prepared->answered, prepared->want, subject_of(the_case), host,
+  Trace answered = expected->trace;
+  for (Sample& sample : answered.samples) sample.clear_outputs();
+  const std::size_t ticks = answered.samples.size();
+  run_and_judge(answered, expected->trace, subject_of(the_case), host,
                 tolerances_of(the_case, level, bits, ticks), options.save_traces, result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;

@@ -27,9 +27,6 @@ struct JudgeOptions {
   // outputs are then those of the reference, which must agree with the golden of the unchanged
   // case.
   std::vector<ParameterChange> parameters = {};
-  // Of the suite's files when the run began, with which each golden is compared; null: not
-  // compared.
-  std::shared_ptr<const FileHashes> suite = nullptr;
 };
 
 // A result that names its vector, or the file of a recorded trace; the other members have their

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "harness/compare/compare_rows.hpp"
+#include "harness/golden/expected_outputs.hpp"
 #include "harness/golden/reference_flight.hpp"
 #include "harness/host/in_process_host.hpp"
 #include "harness/loop/case_timing.hpp"
@@ -169,11 +170,9 @@ void save_flight(const std::filesystem::path& folder, const Trace& flown,
                  const Tolerances& tolerances, VectorResult& result) {
   if (!saves_traces(folder, result) || flown.samples.empty()) return;
   const Subject subject{result.profile, module_of(flown.present)};
-  Trace want = flown;
-  if (const auto fault = drive(*open_builtin(), subject, want)) {
-    want.keep_first(fault->tick);
-  }
-  save_traces(folder, subject, {flown, want, tolerances}, result);
+  const auto want = reference_outputs(subject, flown);
+  if (!want) return;
+  save_traces(folder, subject, {flown, *want, tolerances}, result);
 }
 
 // The fault of a flight. If its traces contradict the plan: a fault of kind protocol.
@@ -240,10 +239,25 @@ Result<VectorResult> evaluate_from_one_period_on(const Course& course, FlightPla
 
 }  // namespace
 
+namespace {
+
+Result<ReferenceFlight> flight_of(const Golden& golden, const RunConfiguration& configuration,
+                                  const Vehicle& vehicle) {
+  if (auto same = golden.check_vehicle(vehicle); !same) return tl::unexpected(same.error());
+  const auto trace = golden.trace(configuration);
+  if (!trace) return tl::unexpected(trace.error());
+  if (!(*trace)->horizon_s || !(*trace)->outputs.present[timestamp_channel]) {
+    return fail_at(golden.file().string(), "has no column horizon_s or timestamp; bless it anew");
+  }
+  return ReferenceFlight{(*trace)->outputs, *(*trace)->horizon_s, (*trace)->metrics};
+}
+
+}  // namespace
+
 Result<VectorResult> evaluate_flight(const Case& the_case, const RunConfiguration& configuration,
                                      const VehicleModel& vehicle_model, const Golden& golden,
                                      PortHost& host, const std::filesystem::path& saved_traces) {
-  const auto reference = golden.read_flight(configuration, vehicle_model.vehicle());
+  const auto reference = flight_of(golden, configuration, vehicle_model.vehicle());
   if (!reference) return tl::unexpected(reference.error());
   const Course course{&the_case, &vehicle_model};
   const FlightPlan plan{configuration, flight_timing(the_case, configuration.rate)};

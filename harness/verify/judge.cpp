@@ -11,14 +11,6 @@
 
 namespace attest {
 
-Tolerances tolerances_of(const Case& the_case, Level level, std::optional<int> fraction_bits,
-                         std::size_t ticks) {
-  Tolerances tolerances(level);
-  for (const auto& [prefix, tolerance] : the_case.tolerances) tolerances.set(prefix, tolerance);
-  if (fraction_bits) tolerances.allow_lsb(*fraction_bits, ticks);
-  return tolerances;
-}
-
 bool marks_declined(const Declarations& port, const std::string& group) {
   const auto& declined = port.unsupported_groups;
   return std::find(declined.begin(), declined.end(), group) != declined.end();

@@ -11,11 +11,6 @@
 
 namespace attest {
 
-// The tolerances of the level. At the numeric level, the case's own replace them where it has some,
-// and a port in fixed point gets wider ones for a run of `ticks` ticks (Tolerances::allow_lsb).
-Tolerances tolerances_of(const Case& the_case, Level level, std::optional<int> fraction_bits,
-                         std::size_t ticks);
-
 // If the port declares that it does not support the result's group, the verdict becomes
 // unsupported. If the port is recorded and the result is of a flight, the verdict becomes skip.
 // Returns true in both cases.

@@ -64,6 +64,9 @@ struct VectorResult {
   // only, and the run has another level. The judge sets it from the case. An answer of the port
   // cannot set it, not even with the same reason.
   bool exact_only = false;
+  // The reference has other bits on this machine than the golden, within the tolerances. The
+  // golden's values decided.
+  bool by_golden = false;
   std::size_t ticks = 0;  // compared
   std::size_t deviating_ticks = 0;
   std::optional<Deviation> first, worst;

@@ -155,6 +155,7 @@ nlohmann::json to_json(const VectorResult& result) {
       {"elapsed_s", json_of(result.elapsed_s)},
   };
   if (result.exact_only) out["exact_only"] = true;
+  if (result.by_golden) out["by_golden"] = true;
   if (result.first) out["first"] = deviation_to_json(*result.first);
   if (result.worst) out["worst"] = deviation_to_json(*result.worst);
   if (result.tightest) out["tightest"] = headroom_to_json(*result.tightest);
@@ -186,6 +187,7 @@ Result<VectorResult> vector_result_from_json(const nlohmann::json& json) {
   else
     reader.wrong(fmt::format("there is no verdict `{}`", verdict));
   out.exact_only = reader.has("exact_only") && reader.flag("exact_only");
+  out.by_golden = reader.has("by_golden") && reader.flag("by_golden");
   if (out.exact_only && out.verdict != Verdict::skip) {
     reader.wrong(fmt::format("`exact_only` is of a skip, and the verdict is {}", verdict));
   }

@@ -55,7 +55,7 @@ refused() {
   make_suite
   run bash -c "ulimit -f 0; exec \"$ATTEST\" --suite suite bless --yes --reason r"
   [ "$status" -eq 2 ]
-  has ".csv: cannot write the file: File too large"
+  has ".csv.new: cannot write the file: File too large"
   [ -z "$(find suite -name '*.new')" ]
 }
 
@@ -121,7 +121,7 @@ refused() {
   # Existing files and new ones; by a link, a link without a target and a detour; of the suite in
   # use and of another one.
   for target in suite/cases/px4-v1.5.5/attitude/roll.toml suite/cases/new.csv suite/BASE \
-    suite/golden/px4-v1.5.5/attitude/roll/250hz.csv alias/new.csv dangling suite/../other/golden/x \
+    suite/golden/px4-v1.5.5/attitude/roll.csv alias/new.csv dangling suite/../other/golden/x \
     "$PWD/other/cases/new.csv" "$SOURCE/models/new.csv"; do
     for command in "run --json" "sim hover --rate 250 --html" "record roll --rate 250 --out"; do
       run "$ATTEST" --suite suite $command "$target"

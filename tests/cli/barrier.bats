@@ -9,7 +9,8 @@ setup_file() {
     mkdir -p "$SUITE/$part/px4-v1.5.5"
     cp -r "$SOURCE/$part/px4-v1.5.5/rates" "$SUITE/$part/px4-v1.5.5/"
   done
-  INSIDE=$(ls "$SUITE"/golden/px4-v1.5.5/rates/*/250hz.csv | head -1)
+  cp "$SOURCE/golden/px4-v1.5.5/provenance.toml" "$SUITE/golden/px4-v1.5.5/"
+  INSIDE=$(ls "$SUITE"/golden/px4-v1.5.5/rates/*.csv | head -1)
   barrier=$("$ATTEST" doctor | grep barrier || true)
   export INSIDE barrier
 }

@@ -45,17 +45,18 @@ gone_on() {
   echo "$output"
 }
 
-golden=golden/px4-v1.5.5/rates/turn
+golden=golden/px4-v1.5.5/rates/turn.csv
 
 @test "a golden that is replaced after the suite was hashed is an error" {
   two_suites
   judged=("$ATTEST" --suite suite run --port "lib:$PORTS/hostile_waits.so" --rate 250 --jobs 1
     --no-diagnose --json report.json)
   in_first_step "${judged[@]}"
-  cp -r forged/$golden/. suite/$golden/
+  cp forged/$golden suite/$golden
+  cp forged/golden/px4-v1.5.5/provenance.toml suite/golden/px4-v1.5.5/
   gone_on
   [ "$status" -eq 2 ]
-  has "suite/$golden/provenance.toml: changed during the run"
+  has "suite/$golden: is not the file that was blessed"
   lacks "turn@250hz "
   grep -q "none: the run is not complete" report.json
 }
@@ -66,11 +67,9 @@ golden=golden/px4-v1.5.5/rates/turn
     rm -rf judged
     cp -r suite judged
     MEDDLE_WITH=""
-    for case in attitude/roll rates/turn; do
-      for file in provenance.toml 250hz.csv; do
-        path="golden/px4-v1.5.5/$case/$file"
-        MEDDLE_WITH+="forged/$path=judged/$path:"
-      done
+    for file in attitude/roll.csv rates/turn.csv provenance.toml; do
+      path="golden/px4-v1.5.5/$file"
+      MEDDLE_WITH+="forged/$path=judged/$path:"
     done
     export MEDDLE_WITH
     run "$ATTEST" --suite judged run --port "lib:$PORTS/hostile_meddles_$how.so" --rate 250 \

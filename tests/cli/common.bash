@@ -77,14 +77,20 @@ nothing_is_left() {
   return 1
 }
 
-# reseal PROVENANCE: updates its checksum, as if attest had written the file.
-reseal() {
+# accept_edit GOLDEN: updates the provenance of its profile, as if attest had written the golden.
+accept_edit() {
   python3 - "$1" <<'SEAL'
-import hashlib, pathlib, sys
-path = pathlib.Path(sys.argv[1])
-lines = path.read_text().splitlines(keepends=True)
+import hashlib, pathlib, re, sys
+golden = pathlib.Path(sys.argv[1])
+path = golden.parent.parent / "provenance.toml"
 prefix = "# SHA-256 of the lines above: "
-text = "".join(line for line in lines if not line.startswith(prefix))
+text = path.read_text().split(prefix)[0]
+entry = f"['{golden.parent.name}/{golden.stem}']"
+begin = text.index(entry)
+key = re.compile(r"^sha256 = .*$", re.MULTILINE)
+place = key.search(text, begin)
+hash_of_golden = hashlib.sha256(golden.read_bytes()).hexdigest()
+text = text[: place.start()] + f"sha256 = '{hash_of_golden}'" + text[place.end() :]
 path.write_text(text + prefix + hashlib.sha256(text.encode()).hexdigest() + "\n")
 SEAL
 }

@@ -43,23 +43,10 @@ groups=(--group attitude --group rates --group timing --group mixer)
 
 @test "a golden that the reference does not agree with is not shifted" {
   blessed_suite
-  golden=suite/golden/px4-v1.5.5/attitude/roll
-  python3 - "$golden" <<'CHANGE'
-import hashlib, pathlib, sys
-folder = pathlib.Path(sys.argv[1])
-trace = folder / "250hz.csv"
-lines = trace.read_text().splitlines()
-column = lines[0].split(",").index("out/actuator_controls_0.control[0]")
-cells = lines[20].split(",")
-cells[column] = "0.25"
-lines[20] = ",".join(cells)
-before = hashlib.sha256(trace.read_bytes()).hexdigest()
-trace.write_text("\n".join(lines) + "\n")
-after = hashlib.sha256(trace.read_bytes()).hexdigest()
-provenance = folder / "provenance.toml"
-provenance.write_text(provenance.read_text().replace(before, after))
-CHANGE
-  reseal suite/golden/px4-v1.5.5/*/*/provenance.toml
+  golden=suite/golden/px4-v1.5.5/attitude/roll.csv
+  awk -F, -v OFS=, 'NR > 1 && $1 != "" { $9 = 0.25 } 1' $golden >changed.csv
+  mv changed.csv $golden
+  accept_edit $golden
   run "$ATTEST" --suite suite run --rate 250 --port "$(right)"
   [ "$status" -eq 2 ]
   has "does not agree with the golden, so the expected outputs at other times"

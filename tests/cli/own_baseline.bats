@@ -15,11 +15,11 @@ ours() { "$ATTEST" --suite ours "$@"; }
   own_suite
   run ours bless --port "lib:$PORTS/port_sign_flip.so" --profile px4-v1.5.5 --yes --reason "our law"
   [ "$status" -eq 0 ]
-  has "blessed 4"
+  has "blessed 2"
   grep -q "^sign-flip .*SHA-256 [0-9a-f]\{64\})" ours/golden/REFERENCE
-  grep -q "reference = 'sign-flip" ours/golden/px4-v1.5.5/rates/p_alone/provenance.toml
+  grep -q "reference = 'sign-flip" ours/golden/px4-v1.5.5/provenance.toml
   # The golden of a long case keeps every tick, because attest's own law cannot fill them in.
-  [ "$(wc -l <ours/golden/px4-v1.5.5/rates/long_run/1000hz.csv)" -eq 5001 ]
+  grep -q "^,4999," ours/golden/px4-v1.5.5/rates/long_run.csv
 
   run ours run --port "lib:$PORTS/port_sign_flip.so" --profile px4-v1.5.5 --level exact \
     --json report.json
@@ -96,8 +96,9 @@ P
   run ours run --port "lib:$PORTS/port_sign_flip.so" "${selection[@]}" --level exact
   [ "$status" -eq 0 ]
   has "custom suite, reference sign-flip"
-  [ "$(wc -l <ours/golden/px4-v1.5.5/rates/p_alone/250hz.csv)" -eq 13 ] # the case of ours
-  [ -e ours/golden/px4-v1.5.5/rates/long_run/1000hz.csv ]               # a case of the base
+  grep -q "^,11," ours/golden/px4-v1.5.5/rates/p_alone.csv # the case of ours has 12 ticks
+  ! grep -q "^,12," ours/golden/px4-v1.5.5/rates/p_alone.csv
+  [ -e ours/golden/px4-v1.5.5/rates/long_run.csv ] # a case of the base
   run ours run "${selection[@]}" --json ours/cases/px4-v1.5.5/rates/p_alone.toml
   [ "$status" -eq 2 ]
   has "is in a suite"
@@ -156,7 +157,7 @@ P
   cp -r "$SOURCE/models" ours
   run ours bless --port "lib:$PORTS/port_sign_flip.so" --profile px4-v1.5.5 --yes --reason "our law"
   [ "$status" -eq 0 ]
-  has "2 cases without golden: flights are compared with attest's own law"
+  has "1 case without golden: flights are compared with attest's own law"
   has "1 case without golden: the port has no mixer"
 }
 

@@ -2,28 +2,41 @@
 
 #include <gtest/gtest.h>
 
+#include "harness/casefile/stimulus.hpp"
+#include "harness/golden/expected_outputs.hpp"
 #include "harness/golden/make_golden.hpp"
 
 namespace attest {
 
-std::vector<GoldenTrace> answers_of_reference(const Case& the_case) {
+std::vector<Trace> answers_of_reference(const Case& the_case) {
+  std::vector<Trace> answers;
+  for (const LoopRate& rate : the_case.rates) {
+    const auto outputs = reference_outputs(subject_of(the_case), stimulate(the_case, rate.unit));
+    EXPECT_TRUE(outputs) << outputs.error().to_string();
+    answers.push_back(outputs.value_or(Trace{}));
+  }
+  return answers;
+}
+
+MadeGolden made_by_reference(const Case& the_case) {
   VehicleModels none("");
   Reference reference = Reference::own();
   auto made = make_golden(the_case, reference, none, [] { return false; });
   EXPECT_TRUE(made) << made.error().to_string();
-  return made ? std::move(made->traces) : std::vector<GoldenTrace>();
+  return made ? *std::move(made) : MadeGolden{};
+}
+
+void bless(const std::filesystem::path& golden_root, const Case& the_case, const MadeGolden& made) {
+  const Goldens old(golden_root);
+  NewGoldens goldens(old);
+  const auto added = goldens.add(the_case, made, {"a test"});
+  ASSERT_TRUE(added) << added.error().to_string();
+  const auto placed = goldens.put_in_place();
+  ASSERT_TRUE(placed) << placed.error().to_string();
 }
 
 void bless(const std::filesystem::path& golden_root, const Case& the_case) {
-  const Case first =
-      the_case.is_of_first_profile() ? the_case : the_case.in_profile(the_case.profiles[0]);
-  const auto of_first = answers_of_reference(first);
-  const GoldenBase base{of_first, golden_folder(golden_root, first)};
-  auto golden = NewGolden::write(golden_root, the_case, answers_of_reference(the_case), {},
-                                 {"a test"}, the_case.is_of_first_profile() ? nullptr : &base);
-  ASSERT_TRUE(golden) << golden.error().to_string();
-  const auto placed = golden->put_in_place();
-  ASSERT_TRUE(placed) << placed.error().to_string();
+  bless(golden_root, the_case, made_by_reference(the_case));
 }
 
 }  // namespace attest

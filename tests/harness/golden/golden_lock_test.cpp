@@ -20,14 +20,14 @@ namespace fs = std::filesystem;
 class GoldenLockTest : public testing::Test {
  protected:
   fs::path root() const { return directory_.path() / "golden"; }
-  fs::path folder(const std::string& name) const { return root() / "profile" / "group" / name; }
+  fs::path folder() const { return root() / "profile" / "group"; }
 
   void put(const std::string& name, const std::string& text) const {
-    fs::create_directories(folder(name));
-    ASSERT_TRUE(write_file(folder(name) / "a.csv", text));
+    fs::create_directories(folder());
+    ASSERT_TRUE(write_file(folder() / name, text));
   }
   std::string text_of(const std::string& name) const {
-    return read_file(folder(name) / "a.csv").value_or("there is no such file");
+    return read_file(folder() / name).value_or("there is no such file");
   }
 
  private:
@@ -60,22 +60,18 @@ TEST_F(GoldenLockTest, IsReleasedByTheDeathOfItsProcess) {
 }
 
 TEST_F(GoldenLockTest, WhatAKilledProcessHasLeftIsRemoved) {
-  put("changed", "blessed");
-  put("changed.new", "half");
-  put("changed.old", "before");
-  put("first.new", "half");
-  put("moved.old", "blessed");
+  put("changed.csv", "blessed");
+  put("changed.csv.new", "half");
   ASSERT_TRUE(GoldenLock::take(root()));
-  EXPECT_EQ(text_of("changed"), "blessed");
-  EXPECT_EQ(text_of("moved"), "blessed");
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder("changed").parent_path()), {}), 2);
+  EXPECT_EQ(text_of("changed.csv"), "blessed");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder()), {}), 1);
 }
 
 TEST_F(GoldenLockTest, WithoutItWhatIsInTheMakingStays) {
   const auto held = GoldenLock::take(root());
-  put("changed.new", "half");
+  put("changed.csv.new", "half");
   EXPECT_FALSE(GoldenLock::take(root()));
-  EXPECT_EQ(text_of("changed.new"), "half");
+  EXPECT_EQ(text_of("changed.csv.new"), "half");
 }
 
 TEST_F(GoldenLockTest, ARootThatCannotBeMadeIsAnError) {

@@ -78,9 +78,7 @@ TEST_F(CsvErrors, RepeatedColumn) {
 TEST_F(CsvErrors, MissingInput) {
   Sheet sheet = Sheet::recorded();
   sheet.remove("in/battery_status.scale");
-  constexpr const char* message =
-      "a.csv:1: no column in/battery_status.scale; add the column, or an entry "
-      "\"in/battery_status.scale\" under [constants] in a provenance.toml next to the file";
+  constexpr const char* message = "a.csv:1: no column in/battery_status.scale; add the column";
   EXPECT_EQ(error_of(sheet.text(), TraceNeed::inputs), message);
   EXPECT_EQ(error_of(sheet.text(), TraceNeed::inputs_and_outputs), message);
   EXPECT_EQ(error_of(sheet.text(), TraceNeed::outputs), "");
@@ -222,26 +220,9 @@ TEST_F(CsvErrors, EmptyLineBetweenRows) {
       "a.csv:3:1: empty line between rows; remove it");
 }
 
-TEST_F(CsvErrors, ColumnThatIsAlsoAConstant) {
-  directory_.write("provenance.toml",
-                   "[constants]\n'in/battery_status.scale' = 1\n'in/parameter.A' = 1\n");
-  Sheet sheet = Sheet::recorded();
-  const int place = sheet.place(0, "in/battery_status.scale");
-  EXPECT_EQ(error_of(sheet.text()),
-            "a.csv:1:" + std::to_string(place) +
-                ": `in/battery_status.scale` is a column and also a constant of provenance.toml; "
-                "remove one");
-  sheet.remove("in/battery_status.scale");
-  sheet.add("in/parameter.A", {"1", "1", "1"});
-  EXPECT_THAT(error_of(sheet.text()),
-              HasSubstr("`in/parameter.A` is a column and also a constant of provenance.toml"));
-}
-
-TEST_F(CsvErrors, BrokenProvenance) {
-  directory_.write("provenance.toml", "[constants]\n'in/battery_status.skale' = 1\n");
-  EXPECT_EQ(error_of(Sheet::recorded().text()),
-            "provenance.toml:2:1: unknown signal `in/battery_status.skale`; did you mean "
-            "`in/battery_status.scale`?");
+TEST_F(CsvErrors, Golden) {
+  EXPECT_THAT(error_of("configurations,tick,out/vehicle_rates_setpoint.yaw\n50hz,0,1\n"),
+              HasSubstr("a.csv:1:1: is a golden, which has no inputs, and no trace"));
 }
 
 TEST_F(CsvErrors, BinaryFiles) {

@@ -6,7 +6,6 @@
 
 #include "harness/core/file.hpp"
 #include "harness/trace/csv.hpp"
-#include "harness/trace/provenance.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
 #include "tests/harness/trace/sheet.hpp"
 
@@ -176,34 +175,6 @@ TEST_F(CsvReader, TurnsParameterColumnsIntoChanges) {
   EXPECT_TRUE(std::signbit(trace.parameters[4].value));
 }
 
-TEST_F(CsvReader, TakesConstantsFromTheProvenanceNextToTheFile) {
-  directory_.write("provenance.toml",
-                   "[constants]\n"
-                   "'in/battery_status.scale' = 0.5\n"
-                   "'in/updated.battery_status' = 1\n"
-                   "'in/vehicle_status.is_vtol' = 3\n"
-                   "'in/parameter.MC_ROLL_P' = 6.5\n"
-                   "'out/actuator_controls_0.control[4]' = -0.0\n");
-  Sheet sheet = Sheet::recorded();
-  sheet.remove("in/battery_status.scale");
-  sheet.remove("in/updated.battery_status");
-  sheet.remove("in/vehicle_status.is_vtol");
-  sheet.add("in/parameter.MC_YAW_P", {"2", "2", "2"});
-  const Trace trace = read(sheet.text());
-  for (const Sample& sample : trace.samples) {
-    EXPECT_EQ(sample.in.battery_status.scale, 0.5f);
-    EXPECT_NE(sample.in.updated & ATTEST_UPDATED_BATTERY_STATUS, 0u);
-    EXPECT_EQ(sample.in.vehicle_status.is_vtol, 3);
-    EXPECT_TRUE(std::signbit(sample.out.actuator_controls_0.control[4]));
-  }
-  EXPECT_EQ(trace.samples[2].in.updated, unsigned{ATTEST_UPDATED_BATTERY_STATUS});
-  EXPECT_TRUE(trace.present[*find_channel(Module::mc_att_control, "in/battery_status.scale")]);
-  EXPECT_TRUE(
-      trace.present[*find_channel(Module::mc_att_control, "out/actuator_controls_0.control[4]")]);
-  EXPECT_THAT(trace.parameters, ElementsAre(ParameterChange{0, "MC_ROLL_P", 6.5f},
-                                            ParameterChange{0, "MC_YAW_P", 2.0f}));
-}
-
 TEST_F(CsvReader, ReadsFilesLongerThanItsBuffer) {
   std::string text = "timestamp,out/vehicle_rates_setpoint.yaw\n";
   constexpr std::size_t rows = 100000;
@@ -216,32 +187,6 @@ TEST_F(CsvReader, ReadsFilesLongerThanItsBuffer) {
     ASSERT_EQ(trace.samples[i - 1].in.timestamp, i);
     ASSERT_EQ(trace.samples[i - 1].out.vehicle_rates_setpoint.yaw,
               static_cast<float>(i % 1000) + 0.5f);
-  }
-}
-
-// The file stores only the columns that differ from its base.
-TEST_F(CsvReader, ABaseHasTheSameTicks) {
-  const TemporaryDirectory directory;
-  const auto first = directory.path() / "first", other = directory.path() / "other";
-  for (const auto& folder : {first, other}) std::filesystem::create_directory(folder);
-  Provenance provenance;
-  ASSERT_TRUE(write_file(first / provenance_name, to_toml(provenance)));
-  provenance.base = "../first";
-  ASSERT_TRUE(write_file(other / provenance_name, to_toml(provenance)));
-  const auto write = [](const std::filesystem::path& folder, const std::string& text) {
-    return write_file(folder / "250hz.csv", text).has_value();
-  };
-  ASSERT_TRUE(write(first, "timestamp,out/vehicle_rates_setpoint.yaw\n1,0.5\n5,0.6\n"));
-  ASSERT_TRUE(write(other, "timestamp,out/vehicle_rates_setpoint.roll\n1,0.1\n5,0.2\n"));
-  const auto read = read_csv(other / "250hz.csv", TraceNeed::outputs);
-  ASSERT_TRUE(read) << read.error().to_string();
-  EXPECT_EQ(read->samples[1].out.vehicle_rates_setpoint.roll, 0.2f);
-  EXPECT_EQ(read->samples[1].out.vehicle_rates_setpoint.yaw, 0.6f);
-  for (const char* ticks : {"1,0.1\n6,0.2\n", "1,0.1\n", "1,0.1\n5,0.2\n9,0.3\n"}) {
-    ASSERT_TRUE(write(other, std::string("timestamp,out/vehicle_rates_setpoint.roll\n") + ticks));
-    const auto refused = read_csv(other / "250hz.csv", TraceNeed::outputs);
-    ASSERT_FALSE(refused) << ticks;
-    EXPECT_THAT(refused.error().message, testing::HasSubstr("has other ticks than its base"));
   }
 }
 

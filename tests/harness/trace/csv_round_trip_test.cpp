@@ -7,7 +7,6 @@
 
 #include "harness/core/file.hpp"
 #include "harness/trace/csv.hpp"
-#include "harness/trace/provenance.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
 #include "tests/harness/trace/sheet.hpp"
 
@@ -107,33 +106,6 @@ RC_GTEST_PROP(CsvRoundTrip, KeepsEveryBit, ()) {
   RC_ASSERT(same_samples(trace, read));
   RC_ASSERT(same_changes(trace, read));
   RC_ASSERT(read.present == trace.present);
-}
-
-RC_GTEST_PROP(CsvRoundTrip, KeepsEveryBitWhenConstantsAreDivided, ()) {
-  const TemporaryDirectory directory;
-  Trace trace = arbitrary_trace();
-  // Some channels that are constant.
-  for (int i = 0; i < 20; ++i) {
-    const Channel& channel = channels()[1 + arbitrary_bits() % (trace.present.count() - 1)];
-    if (channel.name == "in/updated.parameter_update") continue;
-    for (Sample& sample : trace.samples) {
-      set_value(channel, sample, value_of(channel, trace.samples.front()));
-    }
-  }
-  const Division division = divide({trace});
-  Provenance provenance;
-  provenance.constants = division.constants;
-  directory.write(provenance_name, to_toml(provenance));
-  Trace read = written_and_read(trace, division.columns, directory);
-  RC_ASSERT(same_samples(trace, read));
-  RC_ASSERT(read.present == trace.present);
-  // Constants are set first, in the order of their names.
-  const auto by_tick_and_name = [](const ParameterChange& a, const ParameterChange& b) {
-    return std::tie(a.tick, a.name) < std::tie(b.tick, b.name);
-  };
-  std::sort(trace.parameters.begin(), trace.parameters.end(), by_tick_and_name);
-  std::sort(read.parameters.begin(), read.parameters.end(), by_tick_and_name);
-  RC_ASSERT(same_changes(trace, read));
 }
 
 TEST(CsvRoundTrip, WritesWhatWasReadOfARecordedTrace) {

@@ -31,7 +31,7 @@ class EvaluateTest : public testing::Test {
  protected:
   // The first case at 100 Hz.
   Result<VectorResult> evaluate(const std::string& port, Level level = Level::numeric) {
-    const auto golden = Golden::open(suite_.golden(), suite_[0]);
+    const auto golden = Goldens(suite_.golden()).open(suite_[0]);
     if (!golden) return tl::unexpected(golden.error());
     const auto host = opened(port);
     return evaluate_case(suite_[0], Rate::hz(100), *golden, *host, {level});
@@ -111,19 +111,20 @@ class Reciting final : public PortHost {
 };
 
 // The case is unchanged, but its inputs are not: this happens if the harness changes.
-TEST_F(EvaluateTest, AGoldenWithOtherInputsIsAnError) {
+TEST_F(EvaluateTest, AGoldenForOtherInputsIsAnError) {
   suite_.add_unblessed("pitch", pitching);
   Case other = suite_[0];
-  other.parameters.push_back({"MC_ROLL_P", Constant{5}});
+  other.parameters.push_back({"MC_PITCHRATE_P", Constant{0.3}});
   bless(suite_.golden(), other);
   const auto result = evaluate("builtin");
   ASSERT_FALSE(result);
-  EXPECT_THAT(result.error().message, HasSubstr("at tick 0 the golden's inputs are not those"));
+  EXPECT_THAT(result.error().message,
+              HasSubstr("tick 0, the reference of this build answers another"));
 }
 
 TEST_F(EvaluateTest, ARecordedTraceIsGivenToThePort) {
   suite_.add("pitch", pitching);
-  Trace recorded = answers_of_reference(suite_[0])[0].trace;
+  Trace recorded = answers_of_reference(suite_[0])[0];
   recorded.source = "flight.csv";
   const auto judge = [&](const std::string& port) {
     return evaluate_trace(recorded, {"px4-v1.5.5"}, *opened(port), Tolerances());
@@ -170,7 +171,7 @@ class PartsTest : public EvaluateTest {
  protected:
   void SetUp() override {
     suite_.add("pitch", pitching);
-    recorded_ = answers_of_reference(suite_[0])[0].trace;
+    recorded_ = answers_of_reference(suite_[0])[0];
     recorded_.source = "flight.csv";
   }
 
@@ -217,7 +218,7 @@ TEST_F(PartsTest, AreJudgedUpToTheTickThatIsUnsupported) {
 
 TEST_F(EvaluateTest, OnlyTheTicksThatThePortAnsweredAreItsOutputs) {
   suite_.add("pitch", pitching);
-  const Trace recorded = answers_of_reference(suite_[0])[0].trace;
+  const Trace recorded = answers_of_reference(suite_[0])[0];
   ASSERT_GT(recorded.samples.size(), 20u);
   for (const auto& [port, ticks] : std::map<std::string, std::size_t>{
            {test_port("step_fails"), 20}, {test_port("unsupported_step"), 0}}) {
@@ -229,10 +230,10 @@ TEST_F(EvaluateTest, OnlyTheTicksThatThePortAnsweredAreItsOutputs) {
 
 TEST_F(EvaluateTest, AtTheEventsLevelAControllerIsJudgedByItsEvents) {
   suite_.add("pitch", pitching);
-  Trace answers = answers_of_reference(suite_[0])[0].trace;
+  Trace answers = answers_of_reference(suite_[0])[0];
   for (Sample& sample : answers.samples) sample.out.vehicle_rates_setpoint.pitch += 0.01f;
   Reciting port(answers);
-  const auto golden = Golden::open(suite_.golden(), suite_[0]);
+  const auto golden = Goldens(suite_.golden()).open(suite_[0]);
   const auto verdict_at = [&](Level level) {
     return evaluate_case(suite_[0], Rate::hz(100), *golden, port, {level})->verdict;
   };

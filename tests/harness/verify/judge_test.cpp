@@ -46,17 +46,6 @@ TEST(LeavesValuesToJudge, AFlagAloneIsNoValueAndATopicThatIsNeverPublishedHasNon
   EXPECT_TRUE(leaves_values_to_judge((outputs & ~rates) | flag, want));
 }
 
-TEST(TolerancesOf, TheLsbOfAPortIsAllowedInAdditionToTheToleranceOfTheCase) {
-  const Case strict =
-      case_of("[tolerance]\nwhy = \"x\"\nvehicle_rates_setpoint = { absolute = 1e-9 }\n");
-  const std::size_t channel = *find_channel(Module::mc_att_control, roll);
-  const auto absolute = [&](std::optional<int> bits) {
-    return tolerances_of(strict, Level::numeric, bits, 100).of(channel).absolute;
-  };
-  EXPECT_EQ(absolute(std::nullopt), 1e-9);
-  EXPECT_GT(absolute(22), 1.0 / (1 << 22));
-}
-
 TEST(HasOtherSteps, ARecordingOfAFixedStepBeginsOnePeriodAfterZero) {
   Declarations port;
   port.fixed_step = Rate::hz(250);

@@ -44,7 +44,8 @@ JobResults<VectorResult> SmallSuite::run(const HostOptions& host, int processes)
   Jobs<VectorResult> jobs;
   for (const Case& the_case : cases_) {
     const std::vector<SelectedCase> of_job{{the_case, the_case.configurations()}};
-    jobs.push_back(std::make_unique<CaseJob>(of_job, nullptr, golden(), JudgeOptions{}, host));
+    jobs.push_back(std::make_unique<CaseJob>(
+        of_job, nullptr, std::make_shared<const Goldens>(golden()), JudgeOptions{}, host));
   }
   JobOptions<VectorResult> options;
   options.processes = processes;

@@ -1,0 +1,60 @@
+// Goldens that bless writes.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "harness/core/result.hpp"
+#include "harness/golden/golden.hpp"
+
+namespace attest {
+
+// The content of a new golden: the outputs of the reference for a case.
+struct MadeGolden {
+  std::vector<GoldenTrace> traces;  // one for each of the case's configurations, in that order
+  std::vector<std::filesystem::path> vehicle_files = {};  // on which its flights depend
+  std::map<std::string, std::string> inputs = {};         // GoldenOrigin::inputs
+  std::string left_out = {};  // why there is no golden of this case; empty if there is one
+};
+
+// What the origin of a new golden says about its making.
+struct Making {
+  std::string reason;
+  std::string reference = own_reference();  // the controller whose outputs it has
+  static std::string own_reference();       // "attest 0.1.0"
+};
+
+// New goldens, complete, written next to the old ones and not yet put in place. REQUIRES: the
+// caller holds the GoldenLock.
+class NewGoldens {
+ public:
+  // `goldens`: the old ones; it outlives this.
+  explicit NewGoldens(const Goldens& goldens) : goldens_(goldens) {}
+  NewGoldens(NewGoldens&& other) noexcept = default;
+  NewGoldens& operator=(NewGoldens&&) = delete;
+  ~NewGoldens();  // removes what was not put in place
+
+  // Errors: the origins of the old goldens were edited; a file cannot be read or written.
+  Result<void> add(const Case& the_case, const MadeGolden& made, const Making& making);
+
+  // Writes the origins of each profile, then moves the goldens to their places. Golden::open()
+  // finds a complete golden at each moment, even if the process is killed: the old one until the
+  // origins are written, then the new one.
+  Result<void> put_in_place();
+
+  std::size_t size() const { return files_.size(); }
+
+ private:
+  const Goldens& goldens_;
+  std::map<std::string, GoldenOrigins> origins_;  // by profile, with the old ones
+  std::vector<std::filesystem::path> files_;      // their places
+  bool has_origins_ = false;                      // written; the new files then stay
+};
+
+// Ends what a killed bless has begun: moves a new golden to its place if the origins have its hash,
+// otherwise removes it. Errors: a file cannot be moved or removed.
+Result<void> finish_killed_bless(const std::filesystem::path& golden_root);
+
+}  // namespace attest
