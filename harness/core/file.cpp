@@ -12,6 +12,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <openssl/evp.h>
 #include <poll.h>
 #include <sys/stat.h>
@@ -116,9 +117,7 @@ class Sha256 {
   std::string hex() {
     std::array<unsigned char, 32> digest;
     must(EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr));
-    std::string text;
-    for (const unsigned char byte : digest) text += fmt::format("{:02x}", byte);
-    return text;
+    return fmt::format("{:02x}", fmt::join(digest, ""));
   }
 
  private:

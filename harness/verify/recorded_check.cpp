@@ -6,12 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "harness/compare/compare.hpp"
 #include "harness/core/file.hpp"
+#include "harness/golden/expected_outputs.hpp"
 #include "harness/golden/recorded.hpp"
-#include "harness/host/in_process_host.hpp"
-#include "harness/port/builtin.hpp"
 #include "harness/trace/provenance.hpp"
-#include "harness/verify/evaluate.hpp"
 
 namespace attest {
 namespace {
@@ -47,12 +46,12 @@ Result<void> check_bytes(const fs::path& file, const Provenance& provenance) {
 Result<std::string> trace_difference(const fs::path& file) {
   const auto recorded = read_recorded(file);
   if (!recorded) return tl::unexpected(recorded.error());
-  InProcessHost reference(open_builtin());
-  const VectorResult result =
-      evaluate_trace(recorded->trace, recorded->subject, reference, Tolerances(Level::exact));
-  if (result.verdict == Verdict::pass) return std::string();
-  if (!result.first) return result.reason;
-  return fmt::format("{} at tick {}", channels()[result.first->channel].name, result.first->tick);
+  const auto outputs = reference_outputs(recorded->subject, recorded->trace);
+  if (!outputs) return outputs.error().to_string();
+  const auto comparison = compare(*outputs, recorded->trace, Tolerances(Level::exact));
+  if (!comparison.first) return comparison.mismatch;
+  return fmt::format("{} at tick {}", channels()[comparison.first->channel].name,
+                     comparison.first->tick);
 }
 
 Result<std::string> difference(const fs::path& file) {
