@@ -41,7 +41,8 @@ class FaultJobTest : public testing::Test {
 
   Result<FaultCatch> result_of(const faults::Fault& fault, std::optional<int> fraction_bits = {},
                                const std::string& profile = "px4-v1.5.5") const {
-    return FaultJob(fault, profile, cases_, golden(), fraction_bits).run(0);
+    const Goldens goldens(golden());
+    return FaultJob(fault, profile, cases_, goldens, fraction_bits).run(0);
   }
   FaultCatch caught(const char* fault, std::optional<int> fraction_bits = {}) const {
     const auto result = result_of(*faults::find_fault(fault), fraction_bits);
