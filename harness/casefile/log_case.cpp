@@ -1,7 +1,6 @@
 #include "harness/casefile/log_case.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cctype>
 #include <cmath>
 #include <cstdint>
@@ -15,6 +14,7 @@
 
 #include "harness/casefile/parse.hpp"
 #include "harness/casefile/parse_limits.hpp"
+#include "harness/core/agreement.hpp"
 #include "harness/core/toml.hpp"
 #include "harness/port/profiles.hpp"
 #include "harness/schedule/rate.hpp"
@@ -57,7 +57,7 @@ struct Ticks {
 class History {
  public:
   void add(double time_s, double value) {
-    if (!values_.empty() && same(values_.back(), value)) return;
+    if (!values_.empty() && same_bits(values_.back(), value)) return;
     times_s_.push_back(time_s);
     values_.push_back(value);
   }
@@ -72,10 +72,6 @@ class History {
   }
 
  private:
-  static bool same(double a, double b) {
-    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-  }
-
   std::vector<double> times_s_;
   std::vector<double> values_;
 };

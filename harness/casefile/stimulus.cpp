@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "controller/actuation/mixer.hpp"
-#include "harness/core/same_bits.hpp"
+#include "harness/core/agreement.hpp"
 #include "harness/schedule/ticks.hpp"
 
 namespace attest {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "harness/core/agreement.hpp"
+
 namespace attest {
 
 void AllowedDeviation::next(const Sample& want, std::span<const ParameterChange> changes) {
@@ -32,10 +34,8 @@ double AllowedDeviation::widening(const Sample& tick) const {
 }
 
 double AllowedDeviation::of(std::size_t channel, const Sample& tick, float got, float want) const {
-  const Tolerance base = tolerances_.of(channel);
-  const double w = want;
-  const double tolerance = std::max(base.absolute, base.relative * std::abs(w));
-  const double difference = std::abs(static_cast<double>(got) - w);
+  const double tolerance = tolerances_.of(channel).at(want);
+  const double difference = distance(got, want);
   if (difference * ample_headroom <= tolerance || !widens(channel, tick)) return tolerance;
   const double wider = widening(tick);
   // The widening is not finite if an attitude is zero or not finite, or a time constant is zero.

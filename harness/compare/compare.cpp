@@ -15,7 +15,7 @@
 #include "harness/compare/events.hpp"
 #include "harness/compare/gross.hpp"
 #include "harness/compare/suspected_stages.hpp"
-#include "harness/core/same_bits.hpp"
+#include "harness/core/agreement.hpp"
 
 namespace attest {
 namespace {
@@ -162,7 +162,7 @@ bool TickComparer::channel_agrees(std::size_t channel, const Sample& got, const 
   if (same_bits(g, w)) return true;
   const bool both_finite = std::isfinite(g) && std::isfinite(w);
   const double tolerance = both_finite ? allowed_.of(channel, want, g, w) : 0;
-  const double difference = std::abs(static_cast<double>(g) - static_cast<double>(w));
+  const double difference = distance(g, w);
   if (level_ == Level::numeric && both_finite && difference <= tolerance) {
     note_headroom(channel, difference, tolerance);
     return true;

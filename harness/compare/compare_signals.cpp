@@ -1,9 +1,10 @@
 #include "harness/compare/compare_signals.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
+
+#include "harness/core/agreement.hpp"
 
 namespace attest {
 namespace {
@@ -17,22 +18,11 @@ Tolerance tolerance_of(const std::string& name, const Tolerances& tolerances, do
   return outputs.any() ? tolerances.of(outputs._Find_first()) : Tolerance{others, 0};
 }
 
-// `by_bits`: -0 differs from 0. A number never agrees with infinity, although the relative
-// tolerance of an infinite value would be infinite.
 bool is_within(float got, float want, const Tolerance& tolerance, bool by_bits) {
-  if (std::isnan(got) && std::isnan(want)) return true;
-  if (by_bits) return std::bit_cast<std::uint32_t>(got) == std::bit_cast<std::uint32_t>(want);
-  if (got == want) return true;
-  if (!std::isfinite(got) || !std::isfinite(want)) return false;
-  const double off = std::abs(static_cast<double>(got) - static_cast<double>(want));
-  return off <= std::max(tolerance.absolute, tolerance.relative * std::abs(want));
+  return by_bits ? same_bits(got, want) : agree(got, want, tolerance.at(want));
 }
 
-// The distance of two values that deviate. NaN is infinitely far from all values.
-double distance(const SignalPair& pair) {
-  const double off = std::abs(static_cast<double>(pair.got) - static_cast<double>(pair.want));
-  return std::isnan(off) ? std::numeric_limits<double>::infinity() : off;
-}
+double distance(const SignalPair& pair) { return attest::distance(pair.got, pair.want); }
 
 std::int64_t moved(std::uint64_t time_us, std::int64_t shift_us) {
   return static_cast<std::int64_t>(time_us) - shift_us;

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "harness/core/agreement.hpp"
+
 namespace attest {
 namespace {
 
@@ -34,13 +36,6 @@ std::vector<Topic> topics_in(const ChannelSet& present) {
     return topic.published == nullptr || topic.fields.empty();
   });
   return topics;
-}
-
-double deviation(double got, double logged) {
-  if (std::isnan(got) && std::isnan(logged)) return 0;
-  if (got == logged) return 0;
-  const double off = std::abs(got - logged);
-  return std::isnan(off) ? std::numeric_limits<double>::infinity() : off;
 }
 
 // The range of the reference's finite values of a field at a tick and its neighbours.
@@ -144,7 +139,7 @@ class Agreement {
 
   double deviation_at(std::size_t at, std::size_t field) const {
     const Channel& channel = channels()[field];
-    return deviation(value_of(channel, window_.got[at]), value_of(channel, window_.logged[at]));
+    return distance(value_of(channel, window_.got[at]), value_of(channel, window_.logged[at]));
   }
 
   // Also at a tick that is left out, the port's output must be finite if those of reference and log

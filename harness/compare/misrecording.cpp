@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/core/agreement.hpp"
+
 namespace attest {
 namespace {
 
@@ -39,7 +41,7 @@ Topics topics_of(const Trace& got, const Trace& want) {
 
 bool is_near(double got, double want) {
   constexpr double relative = 1e-3, absolute = 1e-5;
-  return std::abs(got - want) <= absolute + relative * std::abs(want);
+  return agree(got, want, absolute + relative * std::abs(want));
 }
 
 bool are_near(const Values& got, const Values& want, double factor) {

@@ -2,7 +2,7 @@
 
 #include "harness/compare/followed_setpoint.hpp"
 #include "harness/compare/publication.hpp"
-#include "harness/core/same_bits.hpp"
+#include "harness/core/agreement.hpp"
 
 namespace attest {
 namespace {

@@ -1,7 +1,9 @@
 // Levels and tolerances for the comparison of outputs.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string_view>
 
@@ -22,6 +24,8 @@ Result<Level> parse_level(std::string_view text);
 struct Tolerance {
   double absolute = 0;  // in the channel's unit
   double relative = 0;
+
+  double at(double want) const { return std::max(absolute, relative * std::abs(want)); }
 };
 
 // The tolerance of every channel. Near a half turn AllowedDeviation (allowed_deviation.hpp) adds

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <optional>
 
 #include "harness/compare/tolerance.hpp"
+#include "harness/core/agreement.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/port/fault_port.hpp"
 
@@ -36,13 +36,8 @@ bool differs(const Output& output, const Sample& a, const Sample& b) {
   if (output.channel.type != ChannelType::f32) {
     return (value_of(output.channel, a) != 0) != (value_of(output.channel, b) != 0);
   }
-  const double x = static_cast<double>(float_of(output.channel, a));
-  const double y = static_cast<double>(float_of(output.channel, b));
-  if (std::isnan(x) || std::isnan(y)) return std::isnan(x) != std::isnan(y);
-  if (x == y) return false;
-  if (std::isinf(x) || std::isinf(y)) return true;
-  const auto [absolute, relative] = output.tolerance;
-  return std::abs(x - y) > std::max(absolute, relative * std::abs(y));
+  const float x = float_of(output.channel, a), y = float_of(output.channel, b);
+  return !agree(x, y, output.tolerance.at(y));
 }
 
 Mask difference(const OutputTable& outputs, const Answer& a, const Answer& b) {

@@ -1,11 +1,11 @@
 #include "harness/golden/golden_change.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include <fmt/format.h>
 
+#include "harness/core/agreement.hpp"
 #include "harness/core/file.hpp"
 
 namespace attest {
@@ -19,18 +19,6 @@ struct Change {
   std::size_t max_channel = 0;
 };
 
-// By bits, as at the exact level: -0 differs from 0, but all NaNs are equal.
-bool differ(double a, double b) {
-  if (std::isnan(a) || std::isnan(b)) return std::isnan(a) != std::isnan(b);
-  return a != b || std::signbit(a) != std::signbit(b);
-}
-
-// Infinite if one value is NaN.
-double deviation(double a, double b) {
-  const double difference = std::abs(a - b);
-  return std::isnan(difference) ? HUGE_VAL : difference;
-}
-
 // REQUIRES: traces of the same ticks.
 Change change_between(const Trace& old_trace, const Trace& new_trace) {
   Change change;
@@ -38,12 +26,11 @@ Change change_between(const Trace& old_trace, const Trace& new_trace) {
     bool differs = false;
     for (std::size_t i = 0; i < channels().size(); ++i) {
       if (!old_trace.present[i] && !new_trace.present[i]) continue;
-      const double before = value_of(channels()[i], old_trace.samples[tick]);
-      const double after = value_of(channels()[i], new_trace.samples[tick]);
-      if (!differ(before, after)) continue;
+      const Sample &before = old_trace.samples[tick], &after = new_trace.samples[tick];
+      if (same_bits(channels()[i], before, after)) continue;
       differs = true;
       change.channels.set(i);
-      const double off = deviation(before, after);
+      const double off = distance(value_of(channels()[i], before), value_of(channels()[i], after));
       if (off <= change.max_deviation) continue;
       change.max_deviation = off;
       change.max_channel = i;

@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "harness/core/same_bits.hpp"
+#include "harness/core/agreement.hpp"
 #include "harness/trace/channel_table.hpp"
 
 namespace attest {

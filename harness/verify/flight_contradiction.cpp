@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "harness/casefile/stimulus.hpp"
-#include "harness/core/same_bits.hpp"
+#include "harness/core/agreement.hpp"
 #include "harness/loop/unit_task.hpp"
 #include "harness/schedule/delay_line.hpp"
 #include "harness/trace/channels.hpp"

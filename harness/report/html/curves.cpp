@@ -2,21 +2,20 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <functional>
 #include <iterator>
 #include <numeric>
 
+#include "harness/core/agreement.hpp"
+
 namespace attest {
 namespace {
 
+// Without tolerance, by bits.
 bool agrees(float got, float want, float allowed) {
-  if (std::bit_cast<std::uint32_t>(got) == std::bit_cast<std::uint32_t>(want)) return true;
-  if (std::isnan(got) || std::isnan(want)) return std::isnan(got) && std::isnan(want);
-  return allowed > 0 && std::abs(static_cast<double>(got) - static_cast<double>(want)) <=
-                            static_cast<double>(allowed);
+  return allowed > 0 ? agree(got, want, allowed) : same_bits(got, want);
 }
 
 Curves curves_of(std::size_t index, const Trace& got, const Trace& want, const Trace* allowed) {

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "harness/core/same_bits.hpp"
+#include "harness/core/agreement.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/html/base64.hpp"
 #include "harness/report/html/curves.hpp"
