@@ -112,9 +112,9 @@ Result<Model> compile(std::string_view mjcf, const std::filesystem::path& xml) {
     const Files files = in_memory(mjcf, xml);
     model.reset(mj_loadXML(xml.c_str(), files.get(), text, error_size));
   } catch (const MujocoError& error) {
-    return fail_at(xml.string(), "MuJoCo: " + one_line(error.what), line_in(error.what));
+    return fail_at(xml.string(), "MuJoCo: " + on_one_line(error.what), line_in(error.what));
   }
-  const std::string simulator_message = one_line(text[0] ? std::string(text) : warning);
+  const std::string simulator_message = on_one_line(text[0] ? std::string(text) : warning);
   if (!model || !simulator_message.empty()) {
     return fail_at(xml.string(), "MuJoCo: " + simulator_message, line_in(simulator_message));
   }
@@ -217,15 +217,9 @@ class MujocoPlant final : public Plant {
   void check() {
     if (lost_) return;
     const mjtNum* v = data_->qvel;
-    const double rate = std::sqrt(v[3] * v[3] + v[4] * v[4] + v[5] * v[5]);
-    if (!std::isfinite(rate + v[0] + v[1] + v[2])) {
-      lost_ = Divergence{now_, "the state is not finite"};
-    } else if (rate > vehicle_.rate_bound_rad_s) {
-      lost_ = Divergence{now_, fmt::format("the body rate is {:.0f} rad/s, beyond {:g}", rate,
-                                           vehicle_.rate_bound_rad_s)};
-    } else if (!warning.empty()) {
-      lost_ = Divergence{now_, "MuJoCo: " + one_line(warning)};
-    }
+    lost_ = divergence_of(std::span<const double, 3>(v, 3), std::span<const double, 3>(v + 3, 3),
+                          vehicle_, now_);
+    if (!lost_ && !warning.empty()) lost_ = Divergence{now_, "MuJoCo: " + on_one_line(warning)};
   }
 
   double power_ratio() const { return vehicle_.power_ratio({data_->act, rotors_}); }
@@ -309,7 +303,7 @@ class CompiledModel final : public MujocoModel {
       mj_setConst(&model, data.get());
       return other;
     } catch (const MujocoError& error) {
-      return fail_at(file_.string(), "MuJoCo: " + one_line(error.what));
+      return fail_at(file_.string(), "MuJoCo: " + on_one_line(error.what));
     }
   }
 
@@ -321,7 +315,7 @@ class CompiledModel final : public MujocoModel {
       leave_out_unused(model);
       return std::make_unique<MujocoPlant>(model, vehicle, options.physics);
     } catch (const MujocoError& error) {
-      return fail_at(file_.string(), "MuJoCo: " + one_line(error.what));
+      return fail_at(file_.string(), "MuJoCo: " + on_one_line(error.what));
     }
   }
 

@@ -1,5 +1,6 @@
 #include "harness/plant/plant.hpp"
 
+#include <cmath>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -62,6 +63,18 @@ Result<std::shared_ptr<const VehicleModel>> load_with_other_mjcf(
 }
 
 }  // namespace
+
+std::optional<Divergence> divergence_of(std::span<const double, 3> velocity,
+                                        std::span<const double, 3> rate, const Vehicle& vehicle,
+                                        Nanoseconds at) {
+  const double size = std::sqrt(rate[0] * rate[0] + rate[1] * rate[1] + rate[2] * rate[2]);
+  if (!std::isfinite(size + velocity[0] + velocity[1] + velocity[2])) {
+    return Divergence{at, "the state is not finite"};
+  }
+  if (size <= vehicle.rate_bound_rad_s) return std::nullopt;
+  return Divergence{at, fmt::format("the body rate is {:.0f} rad/s, beyond {:g}", size,
+                                    vehicle.rate_bound_rad_s)};
+}
 
 std::string_view name_of(PlantKind kind) {
   switch (kind) {

@@ -44,6 +44,12 @@ struct Divergence {
   std::string what;  // "the body rate is 103 rad/s, beyond 100"
 };
 
+// The divergence of a flight with this velocity [m/s] and body rate [rad/s] at time `at`; empty if
+// the flight goes on.
+std::optional<Divergence> divergence_of(std::span<const double, 3> velocity,
+                                        std::span<const double, 3> rate, const Vehicle& vehicle,
+                                        Nanoseconds at);
+
 class Plant {
  public:
   virtual ~Plant() = default;

@@ -12,7 +12,7 @@ int line_in(const std::string& simulator_message) {
   return std::regex_search(simulator_message, found, pattern) ? std::stoi(found[1]) : 0;
 }
 
-std::string one_line(std::string simulator_message) {
+std::string on_one_line(std::string simulator_message) {
   const auto is_space = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
   while (!simulator_message.empty() && is_space(simulator_message.back()))
     simulator_message.pop_back();

@@ -10,6 +10,6 @@ namespace attest {
 int line_in(const std::string& simulator_message);
 
 // The message on one line.
-std::string one_line(std::string simulator_message);
+std::string on_one_line(std::string simulator_message);
 
 }  // namespace attest
