@@ -1,14 +1,19 @@
 #include "harness/ulog/flight_log.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <fstream>
 #include <limits>
+#include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/ulog/format.hpp"
 #include "harness/ulog/own_topics.hpp"
 #include "harness/ulog/unit_log.hpp"
 
@@ -281,7 +286,13 @@ class LogReading {
 }  // namespace
 
 bool is_log(const std::filesystem::path& path) {
-  return path.extension() == ".ulg" || path.extension() == ".ulog";
+  if (path.extension() == ".ulg" || path.extension() == ".ulog") return true;
+  std::error_code unknown;
+  // Of a pipe the bytes could be read only once.
+  if (!std::filesystem::is_regular_file(path, unknown)) return false;
+  std::array<char, ulog::file_magic.size()> begin{};
+  std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
+  return std::string_view(begin.data(), begin.size()) == ulog::file_magic;
 }
 
 Result<FlightLog> open_flight_log(const std::filesystem::path& path,

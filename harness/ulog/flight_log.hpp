@@ -112,7 +112,7 @@ Result<FlightLog> open_flight_log(const std::filesystem::path& path,
 // The ticks of the unit, from the first one on. REQUIRES: the unit outlives them, and has ticks.
 std::shared_ptr<LoggedTicks> ticks_of(const LoggedUnit& unit);
 
-// Whether the name ends with .ulg or .ulog.
+// Whether the file begins as a ULog, or its name ends with .ulg or .ulog.
 bool is_log(const std::filesystem::path& path);
 
 }  // namespace attest

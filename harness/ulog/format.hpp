@@ -14,6 +14,9 @@
 
 namespace attest::ulog {
 
+// The first bytes of every log; the version follows.
+inline constexpr std::string_view file_magic = "ULog\x01\x12\x35";
+
 enum class Type { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64, boolean, character, nested };
 std::string_view name_of(Type type);  // "uint8_t"; empty for nested
 std::uint32_t bytes_of(Type type);    // 0 for nested: depends on the format

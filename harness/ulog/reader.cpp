@@ -19,7 +19,6 @@ using enum DamageKind;
 
 constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
 constexpr std::uint64_t most_file_bytes = std::uint64_t{16} << 30;
-constexpr std::string_view file_magic = "ULog\x01\x12\x35";
 constexpr std::string_view sync_magic = "\x2F\x73\x13\x20\x25\x0C\xBB\x12";
 constexpr std::size_t header_bytes = 16;
 constexpr std::size_t head_bytes = 3;  // of a message: u16 size of its body, type

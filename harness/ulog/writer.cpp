@@ -49,7 +49,7 @@ Result<void> check_fields(const Format& format) {
 }  // namespace
 
 Writer::Writer(AtomicFile file, std::uint64_t start_us) : file_(std::move(file)) {
-  block_ = "ULog\x01\x12\x35\x01" + stored(start_us);
+  block_ = std::string(file_magic) + '\x01' + stored(start_us);
   const std::string no_flags(40, '\0');
   block_ += stored(static_cast<std::uint16_t>(no_flags.size())) + 'B' + no_flags;
 }

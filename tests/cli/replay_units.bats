@@ -375,3 +375,13 @@ CHECK
   [ "$status" -eq 2 ]
   has "would be overwritten"
 }
+
+@test "a log is known by its first bytes, whatever its name" {
+  cp "$FLIGHT" download
+  run "$ATTEST" replay download
+  echo "$output" | sed 's/download/flight.ulg/' >renamed
+  run "$ATTEST" replay "$FLIGHT"
+  [ "$(sed "s#$FLIGHT#flight.ulg#" <<<"$output")" = "$(cat renamed)" ]
+  run "$ATTEST" compare download "$FLIGHT" --level exact
+  [ "$status" -eq 0 ]
+}
