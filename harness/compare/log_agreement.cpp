@@ -139,7 +139,8 @@ class Agreement {
 
   double deviation_at(std::size_t at, std::size_t field) const {
     const Channel& channel = channels()[field];
-    return distance(value_of(channel, window_.got[at]), value_of(channel, window_.logged[at]));
+    return attest::distance(value_of(channel, window_.got[at]),
+                            value_of(channel, window_.logged[at]));
   }
 
   // Also at a tick that is left out, the port's output must be finite if those of reference and log

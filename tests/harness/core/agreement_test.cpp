@@ -7,34 +7,36 @@
 namespace attest {
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity();
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double endless = std::numeric_limits<double>::infinity();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Agreement, EveryNaNIsTheSameAndTheSignOfZeroIsABit) {
-  EXPECT_TRUE(same_bits(nan, -nan));
+  EXPECT_TRUE(same_bits(not_a_number, -not_a_number));
   EXPECT_TRUE(same_bits(-0.0f, -0.0f));
   EXPECT_FALSE(same_bits(-0.0f, 0.0f));
-  EXPECT_FALSE(same_bits(nan, 1.0));
+  EXPECT_FALSE(same_bits(not_a_number, 1.0));
   EXPECT_FALSE(same_bits(1.0f, std::nextafter(1.0f, 2.0f)));
 }
 
 TEST(Agreement, EqualValuesHaveNoDistanceAndNaNIsFarFromNumbers) {
-  for (const double value : {0.0, -3.5, inf, -inf, nan}) EXPECT_EQ(distance(value, value), 0);
+  for (const double value : {0.0, -3.5, endless, -endless, not_a_number})
+    EXPECT_EQ(distance(value, value), 0);
   EXPECT_EQ(distance(-0.0, 0.0), 0);
   EXPECT_EQ(distance(-1.5, 2), 3.5);
-  for (const double other : {0.0, inf, -inf}) EXPECT_EQ(distance(nan, other), inf);
-  EXPECT_EQ(distance(inf, -inf), inf);
+  for (const double other : {0.0, endless, -endless})
+    EXPECT_EQ(distance(not_a_number, other), endless);
+  EXPECT_EQ(distance(endless, -endless), endless);
 }
 
 TEST(Agreement, ANumberNeverAgreesWithInfinityOrNaN) {
   EXPECT_TRUE(agree(1, 1.5, 0.5));
   EXPECT_FALSE(agree(1, 1.5, 0.49));
-  for (const double allowed : {0.0, 1.0, inf}) {
-    EXPECT_TRUE(agree(nan, nan, allowed));
-    EXPECT_TRUE(agree(inf, inf, allowed));
-    EXPECT_FALSE(agree(1, inf, allowed));
-    EXPECT_FALSE(agree(inf, -inf, allowed));
-    EXPECT_FALSE(agree(nan, 1, allowed));
+  for (const double allowed : {0.0, 1.0, endless}) {
+    EXPECT_TRUE(agree(not_a_number, not_a_number, allowed));
+    EXPECT_TRUE(agree(endless, endless, allowed));
+    EXPECT_FALSE(agree(1, endless, allowed));
+    EXPECT_FALSE(agree(endless, -endless, allowed));
+    EXPECT_FALSE(agree(not_a_number, 1, allowed));
   }
 }
 
