@@ -70,11 +70,29 @@ std::optional<double> convert<double>(const toml::node& node) {
   return node.value_exact<double>();
 }
 
-template <typename T>
-toml::array array_of(const std::vector<T>& values) {
-  toml::array array;
-  for (const T& value : values) array.push_back(value);
-  return array;
+// Writes a node as JSON, with one text for equal numbers: 5 also for 5.0 and 0x5. The text of a
+// number can be read back to the bit. toml++ sorts the keys of its tables.
+void write_canonical(const toml::node& node, std::ostream& out) {
+  if (const toml::table* const table = node.as_table()) {
+    out << '{';
+    for (const auto& [key, value] : *table) {
+      out << toml::json_formatter(toml::value<std::string>(key.str())) << ':';
+      write_canonical(value, out);
+      out << ',';
+    }
+    out << '}';
+  } else if (const toml::array* const array = node.as_array()) {
+    out << '[';
+    for (const toml::node& element : *array) {
+      write_canonical(element, out);
+      out << ',';
+    }
+    out << ']';
+  } else if (const auto number = node.value_exact<double>()) {
+    out << fmt::format("{}", *number);
+  } else {
+    out << toml::json_formatter(node);
+  }
 }
 
 }  // namespace
@@ -304,46 +322,16 @@ Result<void> TomlFile::finish() const {
                  all.front().place.column);
 }
 
-struct TomlWriter::Impl {
-  toml::table root;
-  toml::table& at(std::string_view table) { return table.empty() ? root : in(root, table); }
-  static toml::table& in(toml::table& outer, std::string_view table) {
-    return *outer.emplace<toml::table>(table).first->second.as_table();
+std::string TomlFile::canonical(std::span<const std::string_view> without) const {
+  toml::table all = document_->table;
+  for (const std::string_view path : without) {
+    const auto dot = path.find('.');
+    toml::table* const table =
+        dot == std::string_view::npos ? &all : all[path.substr(0, dot)].as_table();
+    if (table) table->erase(path.substr(dot + 1));  // npos + 1 is 0
   }
-};
-
-TomlWriter::TomlWriter() : impl_(std::make_unique<Impl>()) {}
-TomlWriter::~TomlWriter() = default;
-
-void TomlWriter::set(std::string_view table, std::string_view key, std::string_view value) {
-  impl_->at(table).insert_or_assign(key, std::string(value));
-}
-void TomlWriter::set(std::string_view table, std::string_view key, double value) {
-  impl_->at(table).insert_or_assign(key, value);
-}
-void TomlWriter::set(std::string_view table, std::string_view key, std::int64_t value) {
-  impl_->at(table).insert_or_assign(key, value);
-}
-void TomlWriter::set(std::string_view table, std::string_view key,
-                     const std::vector<std::string>& values) {
-  impl_->at(table).insert_or_assign(key, array_of(values));
-}
-void TomlWriter::set(std::string_view table, std::string_view key,
-                     const std::vector<double>& values) {
-  impl_->at(table).insert_or_assign(key, array_of(values));
-}
-void TomlWriter::set(std::string_view table, std::string_view inner, std::string_view key,
-                     std::string_view value) {
-  Impl::in(impl_->at(table), inner).insert_or_assign(key, std::string(value));
-}
-void TomlWriter::set(std::string_view table, std::string_view inner, std::string_view key,
-                     const std::vector<double>& values) {
-  Impl::in(impl_->at(table), inner).insert_or_assign(key, array_of(values));
-}
-
-std::string TomlWriter::to_string() const {
   std::ostringstream text;
-  text << toml::toml_formatter(impl_->root) << '\n';
+  write_canonical(all, text);
   return std::move(text).str();
 }
 

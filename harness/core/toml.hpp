@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -80,6 +81,12 @@ class TomlFile {
   // `thurst`; did you mean `thrust`?"). Later errors are appended to its message, one per line,
   // each with its own place. For a table that was not read, only the table is listed, not its keys.
   Result<void> finish() const;
+
+  // A text that is the same for all files with the same data. It does not depend on comments, white
+  // space, the order of keys, the notation of a table, and the notation of a number: 5, 5.0 and 0x5
+  // are equal. It keeps all bits of a number, and the sign of 0. `without`: keys that are left out,
+  // "why" in the root or "tolerance.why" in a table of the root.
+  std::string canonical(std::span<const std::string_view> without = {}) const;
 
   struct Document;
 

@@ -1,5 +1,6 @@
 #include "harness/core/toml.hpp"
 
+#include <array>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -274,6 +275,23 @@ TEST(Toml, CountsColumnsInCharacters) {
   const TomlFile file = parsed("u = { 'gr\xC3\xB6\xC3\x9F' = 1, no = 2 }\n");
   file.root().table("u").integer("gr\xC3\xB6\xC3\x9F");
   EXPECT_EQ(complaints(file), "case.toml:1:19: unknown key `no`");
+}
+
+TEST(Toml, TheCanonicalTextHasTheDataOnly) {
+  const std::string_view canonical =
+      R"({"a":[1,-0,nan,-inf,1e+16,10000000000000000,true,"1",],"b":{"\"c\\nd":{},},})";
+  for (const char* text :
+       {"a = [1, -0.0, nan, -inf, 1e16, 10000000000000000, true, '1']\nb = { '\"c\\nd' = {} }\n",
+        "b.'\"c\\nd' = {}\na = [ 0x1, -0e0, -nan, -inf,\n 1.0e+16, 10_000_000_000_000_000,\n"
+        " true, \"\\u0031\" ]\n"}) {
+    EXPECT_EQ(parsed(text).canonical(), canonical) << text;
+  }
+}
+
+TEST(Toml, TheCanonicalTextLeavesOutKeys) {
+  const TomlFile file = parsed("why = 1\nb = 2\n[t]\nwhy = 3\nb = 4\n[t.u]\nwhy = 5\n");
+  constexpr std::array<std::string_view, 4> without{"why", "t.b", "b.why", "absent.why"};
+  EXPECT_EQ(file.canonical(without), R"({"b":2,"t":{"u":{"why":5,},"why":3,},})");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -76,6 +77,17 @@ RC_GTEST_PROP(TomlWriter, KeepsEveryFloat, ()) {
   const auto value = static_cast<double>(std::bit_cast<float>(bits));
   RC_PRE(!std::isnan(value));
   RC_ASSERT(std::bit_cast<std::uint64_t>(read_back(value)) == std::bit_cast<std::uint64_t>(value));
+}
+
+RC_GTEST_PROP(TomlCanonical, KeepsEveryBitOfANumber, ()) {
+  const auto bits = *rc::gen::resize(rc::kNominalSize, rc::gen::arbitrary<std::uint64_t>());
+  const auto value = std::bit_cast<double>(bits);
+  RC_PRE(std::isfinite(value));
+  TomlWriter writer;
+  writer.set("", "x", value);
+  const std::string canonical = TomlFile::parse(writer.to_string(), "written")->canonical();
+  RC_ASSERT(canonical.starts_with("{\"x\":"));
+  RC_ASSERT(std::bit_cast<std::uint64_t>(std::stod(canonical.substr(5))) == bits);
 }
 
 TEST(TomlWriter, KeepsEveryText) {
