@@ -126,7 +126,10 @@ enum class Instances : std::uint8_t {
 
 struct Case {
   std::filesystem::path file;
-  std::string sha256;                 // of the file; a golden with another hash is stale
+  std::string file_sha256;  // of the bytes of the file
+  // Of what the file says, without its reasons and its profiles: inputs, rates, tolerances. A
+  // golden with another hash is stale.
+  std::string sha256;
   std::string profile;                // version of the law that this is a case of: "px4-v1.5.5"
   std::vector<std::string> profiles;  // of the file; the first is that of its folder
   std::string group;

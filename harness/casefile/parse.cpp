@@ -28,6 +28,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// The keys that give reasons or select profiles. They have no effect on inputs, expected outputs
+// and tolerances.
+constexpr std::array<std::string_view, 6> no_meaning{
+    "why", "rates_why", "tolerance.why", "flight.vehicles_why", "flight.plants_why", "profiles"};
+
 constexpr std::array<std::pair<std::string_view, Instances>, 7> instances_by_name{{
     {"again", Instances::again},
     {"together", Instances::together},
@@ -144,7 +149,10 @@ void parse_tolerances(const TomlTable& root, Case& parsed) {
   if (!root.has("tolerance")) return;
   const TomlTable table = root.table("tolerance");
   parsed.tolerance_why = table.text("why");
-  for (const std::string& name : table.keys()) {
+  // The name of a topic comes before those of its fields, so that a field overrides its topic.
+  std::vector<std::string> names = table.keys();
+  std::sort(names.begin(), names.end());
+  for (const std::string& name : names) {
     if (name == "why") continue;
     const TomlTable values = table.table(name);
     const Tolerance tolerance{values.number("absolute"), values.number("relative", 0)};
@@ -291,7 +299,8 @@ Result<Case> parse_case_text(std::string_view text, const fs::path& file) {
   if (!toml) return tl::unexpected(toml.error());
   Case parsed;
   parsed.file = file;
-  parsed.sha256 = sha256(text);
+  parsed.file_sha256 = sha256(text);
+  parsed.sha256 = sha256(toml->canonical(no_meaning));
   const TomlTable root = toml->root();
   parse_identity(root, file, parsed);
   parse_body(root, parsed);

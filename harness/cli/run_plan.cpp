@@ -138,7 +138,7 @@ void leave_out_other_laws(const RunPlan& plan, std::vector<SelectedCase>& cases)
 
 // The suite was hashed before its cases were read.
 Result<void> check_case(const Case& the_case, const RunPlan& plan) {
-  return plan.suite->check(the_case.file, the_case.sha256);
+  return plan.suite->check(the_case.file, the_case.file_sha256);
 }
 
 // Plans the selected cases. Their ticks are those of the case files, not of a recorded timing.

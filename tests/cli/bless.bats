@@ -46,10 +46,25 @@ provenance=suite/golden/px4-v1.5.5/provenance.toml
   [ -z "$(find suite -name '*.new' -o -name '*.old')" ]
 }
 
-@test "a comment in a case changes no value" {
+@test "a golden stays current when the case file says the same in other words" {
   blessed_suite
-  echo "# a remark" >>suite/cases/px4-v1.5.5/attitude/roll.toml
+  file=suite/cases/px4-v1.5.5/attitude/roll.toml
+  echo "# a remark" >>$file
+  sed -i 's/^why = .*/why = "Another reason."/; s/duration_ticks = 30/duration_ticks = 0x1E/' $file
+  sed -i '/^roll_rate/{h;d};/^pitch_rate/G' $file
+  run "$ATTEST" --suite suite run --level exact
+  [ "$status" -eq 0 ]
   run "$ATTEST" --suite suite bless --yes --reason "remark"
+  has "1 unchanged"
+}
+
+@test "a key without an effect on the outputs makes the golden stale" {
+  blessed_suite
+  sed -i 's/^why/level = "numeric"\nwhy/' suite/cases/px4-v1.5.5/attitude/roll.toml
+  run "$ATTEST" --suite suite run
+  [ "$status" -eq 2 ]
+  has "the golden is stale"
+  run "$ATTEST" --suite suite bless --yes --reason "level"
   has "no value changes, the case file did"
   run "$ATTEST" --suite suite run
   [ "$status" -eq 0 ]

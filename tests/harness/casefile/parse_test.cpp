@@ -22,7 +22,7 @@ TEST(ParseCase, NamesItByItsPlace) {
   const Case parsed = case_of("");
   EXPECT_EQ(parsed.id(), "px4-v1.5.5/tests/the_case");
   EXPECT_EQ(parsed.why, "a test");
-  EXPECT_EQ(parsed.sha256, sha256(CaseFiles::with("")));
+  EXPECT_EQ(parsed.file_sha256, sha256(CaseFiles::with("")));
 }
 
 TEST(ParseCase, HasDefaults) {
@@ -61,6 +61,20 @@ TEST(ParseCase, ReadsToleranceOverrides) {
   EXPECT_EQ(parsed.tolerances[0].channels, "vehicle_rates_setpoint.roll");
   EXPECT_EQ(parsed.tolerances[0].tolerance.absolute, 0.5);
   EXPECT_EQ(parsed.tolerances[0].tolerance.relative, 0.25);
+}
+
+TEST(ParseCase, TheToleranceOfAFieldOverridesThatOfItsTopic) {
+  const Case parsed = case_of(
+      "[tolerance]\nwhy = \"reason\"\n"
+      "\"vehicle_rates_setpoint.roll\" = { absolute = 0.5 }\n"
+      "\"vehicle_rates_setpoint\" = { absolute = 0.25 }\n");
+  Tolerances tolerances;
+  for (const auto& [channels, tolerance] : parsed.tolerances) tolerances.set(channels, tolerance);
+  const auto of = [&](std::string_view name) {
+    return tolerances.of(*find_channel(Module::mc_att_control, name)).absolute;
+  };
+  EXPECT_EQ(of("out/vehicle_rates_setpoint.roll"), 0.5);
+  EXPECT_EQ(of("out/vehicle_rates_setpoint.yaw"), 0.25);
 }
 
 TEST(ParseCase, EveryTopicIsThereOnceInTheOrderOfItsBits) {
