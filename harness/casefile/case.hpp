@@ -1,8 +1,7 @@
 // A case as plain data: a situation that a controller must handle like the reference.
 //
 // parse.hpp reads it from cases/<profile>/<group>/<name>.toml (SCHEMA.md). stimulus.hpp computes
-// from it the inputs of a unit at one loop rate. A file that names several profiles is a case of
-// each.
+// from it the inputs of a unit at one loop rate. A file with several profiles is a case of each.
 #pragma once
 
 #include <array>
@@ -131,7 +130,7 @@ struct Case {
   // golden with another hash is stale.
   std::string sha256;
   std::string profile;                // version of the law that this is a case of: "px4-v1.5.5"
-  std::vector<std::string> profiles;  // of the file; the first is that of its folder
+  std::vector<std::string> profiles;  // of the file: that of its folder, the others newest first
   std::string group;
   std::string name;  // stem of the file
   std::string why;   // the mistake or property that it tests

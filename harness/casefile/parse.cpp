@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <set>
 #include <string_view>
 #include <system_error>
 
@@ -14,6 +13,7 @@
 #include "controller/actuation/mixer.hpp"
 #include "harness/casefile/parse_flight.hpp"
 #include "harness/casefile/parse_limits.hpp"
+#include "harness/casefile/parse_profiles.hpp"
 #include "harness/casefile/parse_rates.hpp"
 #include "harness/casefile/parse_signal.hpp"
 #include "harness/casefile/parse_topic.hpp"
@@ -30,8 +30,9 @@ namespace fs = std::filesystem;
 
 // The keys that give reasons or select profiles. They have no effect on inputs, expected outputs
 // and tolerances.
-constexpr std::array<std::string_view, 6> no_meaning{
-    "why", "rates_why", "tolerance.why", "flight.vehicles_why", "flight.plants_why", "profiles"};
+constexpr std::array<std::string_view, 8> no_meaning{
+    "why",      "rates_why", "tolerance.why", "flight.vehicles_why", "flight.plants_why",
+    "profiles", "since",     "until"};
 
 constexpr std::array<std::pair<std::string_view, Instances>, 7> instances_by_name{{
     {"again", Instances::again},
@@ -168,29 +169,6 @@ void parse_tolerances(const TomlTable& root, Case& parsed) {
   }
 }
 
-// A file is a case of each of its profiles. Its folder has the name of the first one.
-void parse_profiles(const TomlTable& root, const std::string& folder, Case& parsed) {
-  constexpr const char* key = "profiles";
-  parsed.profiles = root.texts(key);
-  if (parsed.profiles.empty()) {
-    if (root.has(key)) root.error(key, "names no profile");
-    parsed.profiles = {folder};
-  }
-  parsed.profile = parsed.profiles.front();
-  if (root.has(key) && parsed.profile != folder) {
-    root.error(key,
-               fmt::format("begins with `{}`, but the folder is `{}`", parsed.profile, folder));
-  }
-  const std::set<std::string> distinct(parsed.profiles.begin(), parsed.profiles.end());
-  if (distinct.size() != parsed.profiles.size()) root.error(key, "names a profile twice");
-  // The first profile may be unknown to attest: a suite may define a profile that only ports know.
-  for (auto profile = parsed.profiles.begin() + 1; profile != parsed.profiles.end(); ++profile) {
-    if (find_profile(*profile)) continue;
-    root.error(key, fmt::format("`{}` is no profile{}", *profile,
-                                suggestion(*profile, known_profile_names())));
-  }
-}
-
 // The path gives profile, group and name: cases/<profile>/<group>/<name>.toml.
 void parse_identity(const TomlTable& root, const fs::path& file, Case& parsed) {
   // Normalised, because otherwise the folder of "./roll.toml" would be named ".".
@@ -201,7 +179,8 @@ void parse_identity(const TomlTable& root, const fs::path& file, Case& parsed) {
                                     "for unfinished goldens; rename the file",
                                     parsed.name));
   }
-  parse_profiles(root, folder.parent_path().filename().string(), parsed);
+  parsed.profile = folder.parent_path().filename().string();
+  parsed.profiles = parse_profiles(root, parsed.profile);
   parsed.group = root.text("group");
   parsed.why = root.text("why");
   if (root.has("group") && parsed.group != folder.filename()) {

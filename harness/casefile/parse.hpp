@@ -15,10 +15,10 @@ namespace attest {
 // The version of the format of case files.
 inline constexpr std::int64_t schema_version = 1;
 
-// Reads cases/<profile>/<group>/<name>.toml as a case of the first of its profiles. Errors: the
-// file cannot be read; syntax; unknown keys (with the nearest known one); values out of range; a
-// first profile or a group that differs from the folder's. All errors of the content are reported
-// together, with file:line.
+// Reads cases/<profile>/<group>/<name>.toml as a case of the profile of its folder. Errors: the
+// file cannot be read; syntax; unknown keys (with the nearest known one); values out of range;
+// profiles without that of the folder; a group that differs from the folder's. All errors of the
+// content are reported together, with file:line.
 Result<Case> parse_case(const std::filesystem::path& file);
 // The same for the text of a file, which need not exist.
 Result<Case> parse_case_text(std::string_view text, const std::filesystem::path& file);

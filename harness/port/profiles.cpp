@@ -71,6 +71,15 @@ const ProfileInfo* find_profile(std::string_view name) {
   return found == all.end() ? nullptr : &*found;
 }
 
+std::vector<std::string> profiles_of_law(std::string_view profile) {
+  const ProfileInfo* const one = find_profile(profile);
+  std::vector<std::string> names;
+  for (const ProfileInfo& other : known_profiles()) {
+    if (one && (other.modules & one->modules).any()) names.emplace_back(other.name);
+  }
+  return names;
+}
+
 bool makes_unit_of(Port& port, const std::string& profile) {
   const ProfileInfo* const known = find_profile(profile);
   const ModuleSet own = (known ? known->modules : only(Module::mc_att_control)) & port.modules();

@@ -17,12 +17,16 @@ struct ProfileInfo {
   ModuleSet modules;      // those of this version that attest knows
 };
 
-// Every profile: those of the controller, then those of the cascade.
+// Every profile: those of the controller, then those of the cascade, each newest first.
 std::span<const ProfileInfo> known_profiles();
 std::vector<std::string> known_profile_names();
 
 // Returns null if no profile has that name.
 const ProfileInfo* find_profile(std::string_view name);
+
+// The profiles of the law to which `profile` belongs, newest first. Empty if no profile has that
+// name.
+std::vector<std::string> profiles_of_law(std::string_view profile);
 
 // True if the port makes a controller, an attitude unit or a rate unit of that profile. If attest
 // does not know the profile, only a controller is tried.

@@ -91,8 +91,8 @@ TEST(CaseHash, CoversEveryKeyExceptReasons) {
   }
   EXPECT_GT(by_path.size(), 400u);
   // With another value of these keys the rest of the file is not valid, either.
-  const std::set<std::string> with_others{"schema", "group",  "module",
-                                          "signal", "plants", "profiles"};
+  const std::set<std::string> with_others{"schema", "group",    "module", "signal",
+                                          "plants", "profiles", "since",  "until"};
   for (const auto& [path, values] : by_path) {
     if (with_others.contains(values.front().key)) continue;
     constexpr std::size_t attempts = 8;
@@ -128,6 +128,19 @@ TEST(CaseHash, IsTheSameForTheSameDataInOtherWords) {
   EXPECT_EQ(parsed->sha256, case_of(rich).sha256);
   EXPECT_EQ(parsed->file_sha256, sha256(other));
   EXPECT_NE(parsed->file_sha256, case_of(rich).file_sha256);
+}
+
+TEST(CaseHash, IsTheSameForOtherProfiles) {
+  const std::string list = "profiles = [\"px4-v1.5.5\"]";
+  for (const char* profiles :
+       {"profiles = [\"px4-v1.5.5\", \"px4-v1.3.4\"]", "since = \"px4-v1.3.4\"",
+        "until = \"px4-v1.5.5\"", "since = \"px4-v1.5.5\"\nuntil = \"px4-v1.5.5\""}) {
+    std::string text = CaseFiles::with(rich);
+    text.replace(text.find(list), list.size(), profiles);
+    const auto parsed = CaseFiles().parse(text);
+    ASSERT_TRUE(parsed) << parsed.error().to_string();
+    EXPECT_EQ(parsed->sha256, case_of(rich).sha256) << profiles;
+  }
 }
 
 TEST(CaseHash, ChangesWhenAKeyGoesOrMoves) {

@@ -28,13 +28,56 @@ TEST(CaseErrors, SyntaxHasALine) {
 TEST(CaseErrors, IdentityIsThePlaceOfTheFile) {
   EXPECT_EQ(errors_of_text(with_line(3, "group = \"test\"")),
             "3:1: is `test`, but the folder is `tests`");
-  EXPECT_EQ(errors_of_text(with_line(2, "profiles = [\"px4-v1.3.4\"]")),
-            "2:1: begins with `px4-v1.3.4`, but the folder is `px4-v1.5.5`");
-  EXPECT_EQ(errors_of_text(with_line(2, "profiles = [\"px4-v1.5.5\", \"px4-v1.3.5\"]")),
+}
+
+TEST(CaseErrors, ListsOfProfiles) {
+  const auto errors_with = [](const std::string& line) {
+    return errors_of_text(with_line(2, line));
+  };
+  EXPECT_EQ(errors_with("profiles = [\"px4-v1.3.4\"]"),
+            "2:1: leaves out `px4-v1.5.5`, the profile of the folder");
+  EXPECT_EQ(errors_with("profiles = [\"px4-v1.5.5\", \"px4-v1.3.5\"]"),
             "2:1: `px4-v1.3.5` is no profile; did you mean `px4-v1.5.5`?");
-  EXPECT_EQ(errors_of_text(with_line(2, "profiles = []")), "2:1: names no profile");
-  EXPECT_EQ(errors_of_text(with_line(2, "profiles = [\"px4-v1.5.5\", \"px4-v1.5.5\"]")),
+  EXPECT_EQ(errors_with("profiles = [\"px4-v1.16.0\", \"px4-v1.5.5\"]"),
+            "2:1: `px4-v1.16.0` is a profile of another law than the folder");
+  EXPECT_EQ(errors_with("profiles = []"), "2:1: names no profile");
+  EXPECT_EQ(errors_with("profiles = [\"px4-v1.5.5\", \"px4-v1.5.5\"]"),
             "2:1: names a profile twice");
+}
+
+TEST(CaseErrors, RangesOfProfiles) {
+  const auto errors_with = [](const std::string& line) {
+    return errors_of_text(with_line(2, line));
+  };
+  EXPECT_EQ(errors_with("since = \"px4-v1.3.4\"\nprofiles = [\"px4-v1.5.5\"]"),
+            "3:1: `since` or `until` is given too; keep one");
+  EXPECT_EQ(errors_with("until = \"px4-v1.5.5\"\nprofiles = []"),
+            "3:1: `since` or `until` is given too; keep one");
+  EXPECT_EQ(errors_with("since = \"px4-v1.3\""),
+            "2:1: `px4-v1.3` is no profile; did you mean `px4-v1.3.4`?");
+  EXPECT_EQ(errors_with("until = \"\""), "2:1: `` is no profile");
+  EXPECT_EQ(errors_with("since = 1.3"), "2:1: `since` must be text, found a floating point number");
+  EXPECT_EQ(errors_with("  until = \"px4-v1.16.0\""),
+            "2:3: `px4-v1.16.0` is a profile of another law than the folder");
+  EXPECT_EQ(errors_with("since = \"px4-v1.5.5\"\nuntil = \"px4-v1.3.4\""),
+            "3:1: `px4-v1.3.4` is older than `since`, so there is no profile in the range");
+  EXPECT_EQ(errors_with("until = \"px4-v1.3.4\""),
+            "2:1: leaves out `px4-v1.5.5`, the profile of the folder");
+}
+
+std::string errors_in_folder(const std::string& profile, const std::string& line) {
+  const auto parsed = parse_case_text(with_line(2, line), "cases/" + profile + "/tests/a.toml");
+  return parsed ? "" : parsed.error().to_string();
+}
+
+TEST(CaseErrors, ARangeIsOfTheLawOfItsFolder) {
+  EXPECT_EQ(
+      errors_in_folder("px4-v1.3.4", "since = \"px4-v1.5.5\""),
+      "cases/px4-v1.3.4/tests/a.toml:2:1: leaves out `px4-v1.3.4`, the profile of the folder");
+  EXPECT_EQ(errors_in_folder("px4-v1.5.6", "since = \"px4-v1.5.5\""),
+            "cases/px4-v1.5.6/tests/a.toml:2:1: the folder `px4-v1.5.6` is no profile that attest "
+            "knows; did you mean `px4-v1.5.5`?; give `profiles`");
+  EXPECT_EQ(errors_in_folder("our-law", "profiles = [\"px4-v1.5.5\", \"our-law\"]"), "");
 }
 
 TEST(CaseErrors, EachRequiredKeyIsMissedOnce) {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,6 +26,35 @@ TEST(ParseCase, NamesItByItsPlace) {
   EXPECT_EQ(parsed.id(), "px4-v1.5.5/tests/the_case");
   EXPECT_EQ(parsed.why, "a test");
   EXPECT_EQ(parsed.file_sha256, sha256(CaseFiles::with("")));
+}
+
+std::vector<std::string> profiles_in(const std::string& folder, const std::string& lines) {
+  std::string text =
+      "schema = 1\ngroup = \"tests\"\nwhy = \"a test\"\nduration_ticks = 10\n" + lines;
+  if (folder.starts_with("px4-v1.1")) text += "module = \"rate_unit\"\n";
+  const auto parsed = parse_case_text(text, "cases/" + folder + "/tests/a.toml");
+  if (!parsed) throw std::invalid_argument(parsed.error().to_string());
+  EXPECT_EQ(parsed->profile, folder);
+  EXPECT_TRUE(parsed->is_of_first_profile());
+  return parsed->profiles;
+}
+
+TEST(ParseCase, TheProfileOfItsFolderComesFirstAndTheOthersNewestFirst) {
+  constexpr const char *v1_14 = "px4-v1.14.4", *v1_15 = "px4-v1.15.4", *v1_16 = "px4-v1.16.0";
+  const std::string since = "since = \"px4-v1.14.4\"\n", until = "until = \"px4-v1.15.4\"\n";
+  EXPECT_THAT(profiles_in(v1_16, since), ElementsAre(v1_16, v1_15, v1_14));
+  EXPECT_THAT(profiles_in(v1_15, since), ElementsAre(v1_15, v1_16, v1_14));
+  EXPECT_THAT(profiles_in(v1_14, since), ElementsAre(v1_14, v1_16, v1_15));
+  EXPECT_THAT(profiles_in(v1_14, since + until), ElementsAre(v1_14, v1_15));
+  EXPECT_THAT(profiles_in(v1_15, until), ElementsAre(v1_15, v1_14));
+  EXPECT_THAT(profiles_in(v1_16, "since = \"px4-v1.16.0\"\n"), ElementsAre(v1_16));
+  EXPECT_THAT(
+      profiles_in(v1_15, "profiles = [\"px4-v1.14.4\", \"px4-v1.16.0\", \"px4-v1.15.4\"]\n"),
+      ElementsAre(v1_15, v1_16, v1_14));
+  EXPECT_THAT(profiles_in("px4-v1.3.4", "since = \"px4-v1.3.4\"\n"),
+              ElementsAre("px4-v1.3.4", "px4-v1.5.5"));
+  EXPECT_THAT(profiles_in("our-law", "profiles = [\"px4-v1.3.4\", \"px4-v1.5.5\", \"our-law\"]\n"),
+              ElementsAre("our-law", "px4-v1.5.5", "px4-v1.3.4"));
 }
 
 TEST(ParseCase, HasDefaults) {

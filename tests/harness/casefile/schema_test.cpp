@@ -51,8 +51,8 @@ bool is_named(const std::string& word) {
 
 std::string parsers() {
   std::string text;
-  for (const char* name :
-       {"parse.cpp", "parse_flight.cpp", "parse_signal.cpp", "parse_topic.cpp", "task_set.cpp"}) {
+  for (const char* name : {"parse.cpp", "parse_flight.cpp", "parse_profiles.cpp",
+                           "parse_signal.cpp", "parse_topic.cpp", "task_set.cpp"}) {
     text += text_of(source / "harness/casefile" / name);
   }
   return text;
