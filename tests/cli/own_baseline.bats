@@ -5,7 +5,7 @@ own_suite() {
   mkdir -p ours/cases/px4-v1.5.5/rates ours/cases/our-law/rates
   cp "$SOURCE/cases/px4-v1.5.5/rates/p_alone.toml" "$SOURCE/cases/px4-v1.5.5/rates/long_run.toml" \
     ours/cases/px4-v1.5.5/rates
-  sed -e 's/^profiles = .*/profiles = ["our-law"]/' ours/cases/px4-v1.5.5/rates/p_alone.toml \
+  sed -e 's/^since = .*/profiles = ["our-law"]/' ours/cases/px4-v1.5.5/rates/p_alone.toml \
     >ours/cases/our-law/rates/p_alone.toml
 }
 
