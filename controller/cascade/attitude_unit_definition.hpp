@@ -16,7 +16,7 @@ AttitudeUnit<Scalar, Law>::AttitudeUnit(Profile profile, const Law& law)
 
 template <typename Scalar, typename Law>
 bool AttitudeUnit<Scalar, Law>::set_parameter(std::string_view name, float value) {
-  return cascade::set_parameter(parameters_, attitude_parameters(), profile_, name, value);
+  return attest::set_parameter(parameters_, attitude_parameters(), profile_, name, value);
 }
 
 template <typename Scalar, typename Law>

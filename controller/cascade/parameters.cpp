@@ -1,6 +1,5 @@
 #include "controller/cascade/parameters.hpp"
 
-#include <cmath>
 #include <limits>
 
 namespace attest::cascade {
@@ -131,30 +130,5 @@ constexpr ParameterInfo rate_rows[] = {
 
 ParameterTable attitude_parameters() { return attitude_rows; }
 ParameterTable rate_parameters() { return rate_rows; }
-
-const ParameterInfo* find_parameter(ParameterTable table, Profile profile, std::string_view name) {
-  for (const ParameterInfo& info : table) {
-    if (info.name == name && info.profiles.contains(profile)) return &info;
-  }
-  return nullptr;
-}
-
-Parameters default_parameters(ParameterTable table, Profile profile) {
-  Parameters parameters{};
-  for (const ParameterInfo& info : table) {
-    if (info.profiles.contains(profile)) parameters.*info.member = info.default_value;
-  }
-  return parameters;
-}
-
-bool set_parameter(Parameters& parameters, ParameterTable table, Profile profile,
-                   std::string_view name, float value) {
-  const ParameterInfo* const info = find_parameter(table, profile, name);
-  if (info == nullptr) return false;
-  const bool is_integer = std::isfinite(value) && std::trunc(value) == value;
-  if (info->is_int() && !is_integer) return false;
-  parameters.*info->member = value;
-  return true;
-}
 
 }  // namespace attest::cascade

@@ -8,10 +8,8 @@
 // The tables are static and constant; `Parameters` is a plain value. Any thread.
 #pragma once
 
-#include <span>
-#include <string_view>
-
 #include "controller/cascade/profile.hpp"
+#include "controller/parameter_table.hpp"
 
 namespace attest::cascade {
 
@@ -35,37 +33,12 @@ struct Parameters {
   float mc_yaw_tq_cutoff, mc_bat_scale_en;
 };
 
-enum class ParameterType { real, integer };
+using attest::ParameterType;
+using ParameterInfo = attest::ParameterInfo<Parameters, all_profiles>;
+using ParameterTable = attest::ParameterTable<Parameters, all_profiles>;
 
-struct ParameterInfo {
-  std::string_view name;
-  float Parameters::*member;
-  float default_value;
-  float min;
-  float max;              // infinity if there is no upper bound
-  std::string_view unit;  // "1" when dimensionless
-  ParameterType type;
-  std::string_view description;
-  ProfileRange profiles = all_profiles;  // versions of the law to which this row applies
-
-  bool is_int() const { return type == ParameterType::integer; }
-};
-
-// Every parameter of a unit, in a fixed order. If default or bounds of a parameter differ between
-// profiles, it has several rows; find_parameter() and default_parameters() select by profile.
-using ParameterTable = std::span<const ParameterInfo>;
+// Every parameter of a unit, in a fixed order.
 ParameterTable attitude_parameters();
 ParameterTable rate_parameters();
-
-// The row of that name for that profile, or nullptr if the profile has no such parameter.
-const ParameterInfo* find_parameter(ParameterTable table, Profile profile, std::string_view name);
-
-// The values of a new unit. Parameters that the profile does not have in this table are 0.
-Parameters default_parameters(ParameterTable table, Profile profile);
-
-// Sets one value by name. Returns false and changes no value if the profile has no parameter of
-// that name, or if the parameter is an integer and the value is not a whole number.
-bool set_parameter(Parameters& parameters, ParameterTable table, Profile profile,
-                   std::string_view name, float value);
 
 }  // namespace attest::cascade

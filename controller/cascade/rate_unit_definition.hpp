@@ -20,7 +20,7 @@ RateUnit<Scalar, Law>::RateUnit(Profile profile, const Law& law)
 
 template <typename Scalar, typename Law>
 bool RateUnit<Scalar, Law>::set_parameter(std::string_view name, float value) {
-  return cascade::set_parameter(parameters_, rate_parameters(), profile_, name, value);
+  return attest::set_parameter(parameters_, rate_parameters(), profile_, name, value);
 }
 
 template <typename Scalar, typename Law>

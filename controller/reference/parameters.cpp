@@ -1,7 +1,6 @@
 #include "controller/reference/parameters.hpp"
 
 #include <array>
-#include <cmath>
 
 namespace attest::reference {
 namespace {
@@ -83,28 +82,6 @@ constexpr std::array<ParameterInfo, 33> all_parameters{{
 
 }  // namespace
 
-std::span<const ParameterInfo> parameter_table() { return all_parameters; }
-
-const ParameterInfo* find_parameter(std::string_view name) {
-  for (const ParameterInfo& info : all_parameters) {
-    if (info.name == name) return &info;
-  }
-  return nullptr;
-}
-
-Parameters default_parameters() {
-  Parameters parameters{};
-  for (const ParameterInfo& info : all_parameters) parameters.*info.member = info.default_value;
-  return parameters;
-}
-
-bool set_parameter(Parameters& parameters, Profile profile, std::string_view name, float value) {
-  const ParameterInfo* const info = find_parameter(name);
-  if (info == nullptr || !info->profiles.contains(profile)) return false;
-  const bool is_integer = std::isfinite(value) && std::trunc(value) == value;
-  if (info->type == ParameterType::integer && !is_integer) return false;
-  parameters.*info->member = value;
-  return true;
-}
+ParameterTable parameter_table() { return all_parameters; }
 
 }  // namespace attest::reference

@@ -8,9 +8,9 @@
 // The table is static and constant; `Parameters` is a plain value. Any thread.
 #pragma once
 
-#include <span>
 #include <string_view>
 
+#include "controller/parameter_table.hpp"
 #include "controller/reference/profile.hpp"
 
 namespace attest::reference {
@@ -31,31 +31,23 @@ struct Parameters {
   float cbrk_rate_ctrl;
 };
 
-enum class ParameterType { real, integer };
-
-struct ParameterInfo {
-  std::string_view name;
-  float Parameters::*member;
-  float default_value;
-  float min;
-  float max;
-  std::string_view unit;  // "1" when dimensionless
-  ParameterType type;
-  std::string_view description;
-  ProfileRange profiles = all_profiles;  // versions of the law that have the parameter
-};
+using attest::ParameterType;
+using ParameterInfo = attest::ParameterInfo<Parameters, all_profiles>;
+using ParameterTable = attest::ParameterTable<Parameters, all_profiles>;
 
 // Every parameter of the law, in a fixed order.
-std::span<const ParameterInfo> parameter_table();
+ParameterTable parameter_table();
 
-// The entry of that name, or nullptr if no parameter has it.
-const ParameterInfo* find_parameter(std::string_view name);
+// The values of a new controller of any profile: each parameter has one default, and the newest
+// profile has all parameters.
+inline Parameters default_parameters() {
+  return attest::default_parameters(parameter_table(), newest);
+}
 
-// The values of a new controller.
-Parameters default_parameters();
-
-// Sets one value by name. Returns false and changes no value if the profile has no parameter of
-// that name, or if the parameter is an integer and the value is not a whole number.
-bool set_parameter(Parameters& parameters, Profile profile, std::string_view name, float value);
+// Same as set_parameter() of parameter_table.hpp, with the table of the law.
+inline bool set_parameter(Parameters& parameters, Profile profile, std::string_view name,
+                          float value) {
+  return attest::set_parameter(parameters, parameter_table(), profile, name, value);
+}
 
 }  // namespace attest::reference

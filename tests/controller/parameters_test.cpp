@@ -33,7 +33,7 @@ TEST(Parameters, DefaultsAreInsideTheirRange) {
     EXPECT_GE(info.max, info.default_value) << info.name;
     EXPECT_FALSE(info.unit.empty()) << info.name;
     EXPECT_FALSE(info.description.empty()) << info.name;
-    EXPECT_EQ(find_parameter(info.name), &info);
+    EXPECT_EQ(find_parameter(parameter_table(), newest, info.name), &info);
   }
 }
 
