@@ -8,7 +8,7 @@
 namespace attest::cli {
 
 std::string exchange_note(const std::string& port) {
-  if (!is_program(port)) return "";
+  if (!kind_of(port).is_program) return "";
   constexpr std::size_t frame_bytes = 144;  // a `step` request of the controller (PROTOCOL.md)
   const auto pipes = pipe_round_trip(frame_bytes);
   const auto memory = memory_round_trip(frame_bytes);

@@ -51,12 +51,12 @@ Result<void> ask_port(const std::vector<std::string>& profiles, RunPlan& plan) {
 // Of a recorded port: checks that its outputs are for the inputs of these cases, and prints how
 // many vectors have outputs.
 Result<void> check_recorded(const std::vector<SelectedCase>& cases, const RunPlan& plan) {
-  const auto folder = recorded_folder(plan.host.port);
-  if (!folder || !plan.host.said) return {};
-  const auto found = check_recorded_vectors(*folder, *plan.host.said, cases);
+  if (kind_of(plan.host.port).is_callable() || !plan.host.said) return {};
+  const std::string folder = argument_of(plan.host.port);
+  const auto found = check_recorded_vectors(folder, *plan.host.said, cases);
   if (!found) return tl::unexpected(found.error());
   fmt::print(stderr, "attest: note: {} of {} selected vectors have outputs in {}\n",
-             found->answered, found->selected, *folder);
+             found->answered, found->selected, folder);
   if (!found->ignored.empty()) {
     fmt::print(stderr, "attest: note: {}: these columns are ignored: {}\n", found->first,
                fmt::join(found->ignored, ", "));
@@ -69,12 +69,11 @@ Result<void> check_recorded(const std::vector<SelectedCase>& cases, const RunPla
 // parameters of the cases.
 Result<void> set_parameters(const RunOptions& options, const std::vector<SelectedCase>& cases,
                             RunPlan& plan) {
-  const auto folder = recorded_folder(options.host.port);
-  if (folder && !options.parameters.empty()) {
+  if (!kind_of(options.host.port).is_callable() && !options.parameters.empty()) {
     return fail(
         fmt::format("--param: the outputs in {} were recorded with the parameters of the "
                     "cases; leave --param out",
-                    *folder));
+                    argument_of(options.host.port)));
   }
   if (!plan.run.suite_reference.empty() && !options.parameters.empty()) {
     return fail(

@@ -52,9 +52,7 @@ void add_examples(CLI::App& command, std::initializer_list<Example> examples) {
 
 void add_port(CLI::App& command, const Globals& globals, HostOptions& host, Ports accepted) {
   host.barrier = globals.barrier;
-  const std::string kinds = accepted == Ports::any
-                                ? fmt::format("{}, `recorded:DIR`", callable_port_kinds)
-                                : callable_port_kinds;
+  const std::string kinds = names_of_port_kinds(accepted == Ports::callable);
   CLI::Option* const option =
       command
           .add_option("--port", host.port,
@@ -63,7 +61,7 @@ void add_port(CLI::App& command, const Globals& globals, HostOptions& host, Port
           ->capture_default_str();
   if (accepted == Ports::any) return;
   option->check([](const std::string& given) -> std::string {
-    if (!recorded_folder(given)) return "";
+    if (kind_of(given).is_callable()) return "";
     return fmt::format(
         "{}: this command must call the port, and the outputs of a recorded port are files; use "
         "`attest run`",

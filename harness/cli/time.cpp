@@ -54,7 +54,7 @@ std::vector<std::uint64_t> counted(const TimeCommandOptions& options, const Suit
 }
 
 Result<void> check(const TimeCommandOptions& options, const std::string& suite) {
-  if (options.instructions && is_program(options.host.port)) {
+  if (options.instructions && kind_of(options.host.port).is_program) {
     return fail(
         "--instructions counts those of a library: a program has a process of its own; run "
         "valgrind on the program itself");
@@ -77,7 +77,8 @@ Result<CorpusTimes> timed(const TimeCommandOptions& options, const HostOptions& 
   for (const SelectedCase& selected : cases) vectors += selected.configurations.size();
   Progress progress(vectors, Progress::on_stderr(quiet));
   TimeOptions measure = options.measure;
-  measure.stack = measure.stack && !is_program(host.port);  // its stack is in another process
+  measure.stack =
+      measure.stack && !kind_of(host.port).is_program;  // its stack is in another process
   auto times =
       time_corpus(cases, measure, host, [&](const VectorResult& result) { progress.add(result); });
   progress.finish();

@@ -46,7 +46,7 @@ class PortProcess final : public PortHost {
     if (!greeted) return {};
     if (!*greeted) {
       Error error = greeted->error();
-      if (is_program(options_.port)) error.message += port_->child.last_printed();
+      if (kind_of(options_.port).is_program) error.message += port_->child.last_printed();
       return tl::unexpected(std::move(error));
     }
     if (!options_.said) {
@@ -139,7 +139,7 @@ class PortProcess final : public PortHost {
   Patience patience() {
     Patience limit;
     limit.given_up = [this, meter = AnswerMeter(*port_, options_.timeout_s,
-                                                is_program(options_.port))]() mutable {
+                                                kind_of(options_.port).is_program)]() mutable {
       exceeded_ = meter.exceeded();
       return exceeded_ != AnswerMeter::Limit::none || options_.stop();
     };
@@ -150,7 +150,7 @@ class PortProcess final : public PortHost {
   std::optional<PortFault> judged(std::optional<PortFault> fault,
                                   const std::string& profile) const {
     return with_words(held_to(declarations_, profile, std::move(fault)), port_->child,
-                      is_program(options_.port));
+                      kind_of(options_.port).is_program);
   }
 
   template <typename Read>
@@ -165,7 +165,7 @@ class PortProcess final : public PortHost {
         if (came != Kind::message) kind = came;
         return came == Kind::message;
       });
-      const Arrived arrived{received.head, blobs, request_, is_program(options_.port)};
+      const Arrived arrived{received.head, blobs, request_, kind_of(options_.port).is_program};
       auto answer = read(arrived);
       if (answer) return answer;
       wrong = answer.error().message;
@@ -236,7 +236,7 @@ Result<std::unique_ptr<PortProcess>> start_process(const HostOptions& options,
 
 Result<std::unique_ptr<PortHost>> start_host(const HostOptions& options, const Course& course) {
   if (options.start) return options.start(options, course);
-  if (const auto folder = recorded_folder(options.port)) return open_recorded_host(*folder);
+  if (!kind_of(options.port).is_callable()) return open_recorded_host(argument_of(options.port));
   if (options.in_process) {
     return open_in_process_host(options.port, options.said, course, nullptr, options.files.get());
   }
@@ -297,8 +297,8 @@ void hold_to(const PortDescription& port, HostOptions& options) {
 
 Result<PortDescription> describe_port(const HostOptions& options,
                                       const std::vector<std::string>& profiles) {
-  if (const auto folder = recorded_folder(options.port)) {
-    return open_recorded_host(*folder).map([](const auto& host) {
+  if (!kind_of(options.port).is_callable()) {
+    return open_recorded_host(argument_of(options.port)).map([](const auto& host) {
       PortDescription description;
       static_cast<Declarations&>(description) = host->declarations();
       return description;
@@ -321,7 +321,7 @@ Result<PortDescription> prepare_port(HostOptions& options,
   // If a file is no port, the error of loading it is the better one.
   if (!port) return port;
   if (!hashed) return tl::unexpected(hashed.error());
-  if (is_program(options.port) && !port->files.empty()) {
+  if (kind_of(options.port).is_program && !port->files.empty()) {
     if (auto again = store(PortFiles::read(options.port, port->files)); !again) {
       return tl::unexpected(again.error());
     }

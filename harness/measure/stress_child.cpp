@@ -229,7 +229,7 @@ Result<StressResults> run_stress(const StressTask& task, const HostOptions& host
       Child::Runs::code_of_others, [&](MessageSocket& parent) { work(task, host, *calls, parent); },
       *host.barrier);
   if (!child) return tl::unexpected(child.error());
-  return Listener(task, is_program(host.port), *calls, *child, progress).listen(stop);
+  return Listener(task, kind_of(host.port).is_program, *calls, *child, progress).listen(stop);
 }
 
 }  // namespace attest

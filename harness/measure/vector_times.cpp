@@ -50,7 +50,7 @@ class Stopwatches {
     const TimedRequest request(*host_);
     auto timed = host_->time_steps(subject, inputs, with_stack);
     // A program does not share the process that reads the clock.
-    if (!timed || timed->fault || is_program(host_options_.port)) return timed;
+    if (!timed || timed->fault || kind_of(host_options_.port).is_program) return timed;
     request.end(*timed, with_stack, totals_);
     if (const std::string what = clock_contradiction(totals_); !what.empty()) {
       timed->fault = PortFault{PortFault::Kind::protocol, 0, what};

@@ -1,39 +1,24 @@
-// Reads the specification of a port on a command line: its kind and its files. Opens the port.
+// The table of the kinds of port, and what is asked of a kind by the specification of a port.
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/port/builtin.hpp"
 #include "harness/port/fault_port.hpp"
 #include "harness/port/port.hpp"
 #include "harness/port/port_files.hpp"
 #include "harness/port/program_port.hpp"
-#include "harness/port/shared_library.hpp"
-#include "harness/process/program.hpp"
 
 namespace attest {
+
+Result<std::unique_ptr<Port>> open_shared_library(const std::string& path);  // shared_library.cpp
+
 namespace {
 
-// The text after the prefix; empty if the specification has another prefix.
-std::optional<std::string> after(std::string_view prefix, const std::string& specification) {
-  if (!specification.starts_with(prefix)) return std::nullopt;
-  return specification.substr(prefix.size());
-}
-
-std::vector<std::string> files_of_program(const std::string& command) {
-  const auto words = words_of(command);
-  if (!words) return {};
-  std::vector<std::string> files;
-  if (auto program = find_program(words->front())) files.push_back(*std::move(program));
-  for (std::size_t i = 1; i < words->size(); ++i) {
-    std::error_code ignored;
-    if (std::filesystem::is_regular_file((*words)[i], ignored)) files.push_back((*words)[i]);
-  }
-  return files;
-}
-
+// All files below the folder, sorted.
 std::vector<std::string> files_below(const std::string& folder) {
   std::vector<std::string> files;
   std::error_code ignored;
@@ -44,31 +29,7 @@ std::vector<std::string> files_below(const std::string& folder) {
   return files;
 }
 
-}  // namespace
-
-std::optional<std::string> recorded_folder(const std::string& specification) {
-  return after("recorded:", specification);
-}
-
-std::vector<std::string> files_of(const std::string& specification) {
-  if (auto library = after("lib:", specification)) return {*std::move(library)};
-  if (const auto command = after("proc:", specification)) return files_of_program(*command);
-  if (const auto folder = recorded_folder(specification)) return files_below(*folder);
-  return {};
-}
-
-bool is_program(const std::string& specification) { return specification.starts_with("proc:"); }
-
-Result<std::unique_ptr<Port>> open_port(const std::string& specification, const PortFiles* files) {
-  if (files != nullptr) {
-    if (auto same = files->check(PortFiles::Untouched::skipped); !same) {
-      return tl::unexpected(same.error());
-    }
-  }
-  if (specification == "builtin") return open_builtin();
-  if (const auto fault = after("fault:", specification)) return open_fault(*fault);
-  if (const auto library = after("lib:", specification)) return open_shared_library(*library);
-  if (const auto command = after("proc:", specification)) return open_program(*command);
+Result<std::unique_ptr<Port>> refuse_unknown(const std::string& specification) {
   std::error_code unreadable;
   if (std::filesystem::is_regular_file(specification, unreadable)) {
     return fail(
@@ -76,7 +37,60 @@ Result<std::unique_ptr<Port>> open_port(const std::string& specification, const 
                     "`proc:{0}`",
                     specification));
   }
-  return fail(fmt::format("unknown port `{}`; use one of {}", specification, callable_port_kinds));
+  return fail(
+      fmt::format("unknown port `{}`; use one of {}", specification, names_of_port_kinds(true)));
+}
+
+// In the order of the help.
+constexpr PortKind kinds[] = {
+    {"builtin", "", false, nullptr,
+     [](const std::string&) -> Result<std::unique_ptr<Port>> { return open_builtin(); }},
+    {"lib:", "PATH", false, [](const std::string& path) { return std::vector{path}; },
+     open_shared_library},
+    {"proc:", "COMMAND", true, files_of_program, open_program},
+    {"fault:", "ID", false, nullptr, [](const std::string& ids) { return open_fault(ids); }},
+    {"recorded:", "DIR", false, files_below, nullptr},
+};
+constexpr PortKind unknown_kind{"", "", false, nullptr, refuse_unknown};
+
+}  // namespace
+
+const PortKind& kind_of(const std::string& specification) {
+  for (const PortKind& kind : kinds) {
+    if (kind.argument.empty() ? specification == kind.prefix
+                              : specification.starts_with(kind.prefix)) {
+      return kind;
+    }
+  }
+  return unknown_kind;
+}
+
+std::string argument_of(const std::string& specification) {
+  return specification.substr(kind_of(specification).prefix.size());
+}
+
+std::vector<std::string> files_of(const std::string& specification) {
+  const PortKind& kind = kind_of(specification);
+  return kind.files ? kind.files(argument_of(specification)) : std::vector<std::string>();
+}
+
+std::string names_of_port_kinds(bool only_callable) {
+  std::vector<std::string> names;
+  for (const PortKind& kind : kinds) {
+    if (only_callable && !kind.is_callable()) continue;
+    names.push_back(fmt::format("`{}{}`", kind.prefix, kind.argument));
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+Result<std::unique_ptr<Port>> open_port(const std::string& specification, const PortFiles* files) {
+  if (files != nullptr) {
+    if (auto same = files->check(PortFiles::Untouched::skipped); !same) {
+      return tl::unexpected(same.error());
+    }
+  }
+  const PortKind& kind = kind_of(specification);
+  return kind.open ? kind.open(argument_of(specification)) : refuse_unknown(specification);
 }
 
 }  // namespace attest

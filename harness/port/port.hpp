@@ -1,9 +1,7 @@
 // A port: the software under test. It implements one or more modules. A Unit is one running
 // instance of any module, also of a mixer or a battery estimate.
 //
-// The kinds of port are `builtin` (the reference), `lib:PATH` (a shared library with the ABI of
-// attest_unit.h), `proc:COMMAND` (a program, PROTOCOL.md), `recorded:DIR` (outputs in files, which
-// are judged without a call) and `fault:ID` (the reference with a fault of the catalogue).
+// The kinds of port are the rows of a table in open_port.cpp.
 #pragma once
 
 #include <cstdint>
@@ -140,28 +138,34 @@ std::string wrong_in_declared(std::string_view name, std::string_view version,
 // range.
 Result<int> parse_fraction_bits(std::string_view arithmetic);
 
-// The files of a port: PATH of "lib:PATH"; of "proc:COMMAND" the program, and each of its arguments
-// that is a file; of "recorded:DIR" all files below DIR, sorted. Empty for a port without files.
+// A kind of port. A specification is its prefix and an argument: "lib:" and "./mine.so".
+struct PortKind {
+  std::string_view prefix;
+  std::string_view argument;  // for help: "PATH"; empty for a kind without an argument
+  bool is_program;            // its units are in a process of its own, and answer messages
+  // The files that the port consists of. Null: it has no files.
+  std::vector<std::string> (*files)(const std::string& argument);
+  // Null: the port cannot be called. Its outputs are in the folder `argument`; start_host() opens
+  // it, and open_port() refuses it.
+  Result<std::unique_ptr<Port>> (*open)(const std::string& argument);
+
+  bool is_callable() const { return open != nullptr; }
+};
+
+// Of an unknown kind: a row without files whose open() fails.
+const PortKind& kind_of(const std::string& specification);
+std::string argument_of(const std::string& specification);
 std::vector<std::string> files_of(const std::string& specification);
 
-// True for "proc:COMMAND".
-bool is_program(const std::string& specification);
-
-// For help and messages: the kinds that open_port() opens.
-inline constexpr const char* callable_port_kinds =
-    "`builtin`, `lib:PATH`, `proc:COMMAND`, `fault:ID`";
-
-// DIR of "recorded:DIR"; empty for other ports. open_port() refuses such a port, because it has
-// no functions to call. start_host() opens it.
-std::optional<std::string> recorded_folder(const std::string& specification);
+// For help and messages: "`builtin`, `lib:PATH`". `only_callable`: those that open_port() opens.
+std::string names_of_port_kinds(bool only_callable);
 
 class PortFiles;
 
-// Opens a port of a kind in `callable_port_kinds`. Loading a library runs its code, and a program
-// may not answer: a caller that must survive a bad port does this in a child process. Errors:
-// unknown kind, unknown fault; missing library, missing symbol, wrong ABI version, incomplete
-// function table; those of open_program(). `files`, if not null: the port is loaded only if they
-// have the bytes that were hashed; otherwise the errors of PortFiles::check().
+// Opens a port. Loading a library runs its code, and a program may not answer: a caller that must
+// survive a bad port does this in a child process. Errors: unknown kind; those of the kind's
+// open(). `files`, if not null: the port is loaded only if they have the bytes that were hashed;
+// otherwise the errors of PortFiles::check().
 Result<std::unique_ptr<Port>> open_port(const std::string& specification,
                                         const PortFiles* files = nullptr);
 

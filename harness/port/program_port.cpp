@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -151,6 +153,18 @@ Result<std::vector<std::string>> words_of(const std::string& command) {
   if (error != 0) return fail(fmt::format("the command `{}` {}", command, why_not_split(error)));
   if (words.empty()) return fail("`proc:` needs a command: --port \"proc:python3 port.py\"");
   return words;
+}
+
+std::vector<std::string> files_of_program(const std::string& command) {
+  const auto words = words_of(command);
+  if (!words) return {};
+  std::vector<std::string> files;
+  if (auto program = find_program(words->front())) files.push_back(*std::move(program));
+  for (std::size_t i = 1; i < words->size(); ++i) {
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file((*words)[i], ignored)) files.push_back((*words)[i]);
+  }
+  return files;
 }
 
 Result<std::unique_ptr<Port>> open_program(const std::string& command) {

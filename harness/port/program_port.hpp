@@ -15,6 +15,9 @@ namespace attest {
 // shell can handle.
 Result<std::vector<std::string>> words_of(const std::string& command);
 
+// The program, and each of its arguments that is a file.
+std::vector<std::string> files_of_program(const std::string& command);
+
 // Starts the program and makes the handshake. A program that ends, or breaks the protocol, is
 // started again at the next create_unit(). Errors: those of words_of(); no such program; it does
 // not answer the handshake as it must.

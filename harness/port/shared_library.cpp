@@ -1,5 +1,4 @@
-#include "harness/port/shared_library.hpp"
-
+// `lib:PATH`: a shared library that exports attest_unit_v1().
 #include <filesystem>
 #include <system_error>
 
@@ -7,6 +6,7 @@
 
 #include "harness/core/dynamic_library.hpp"
 #include "harness/port/abi_port.hpp"
+#include "harness/port/port.hpp"
 
 namespace attest {
 namespace {
