@@ -26,13 +26,6 @@ constexpr double us_per_s = 1e6;
 
 double seconds(std::uint64_t time_us) { return static_cast<double>(time_us) / us_per_s; }
 
-// The topic that is new at every step: the first of the module's inputs.
-std::string_view step_topic_of(Module module) {
-  constexpr std::string_view prefix = "in/";
-  const std::string_view first = channels()[channels_of(module, prefix)._Find_first()].name;
-  return first.substr(prefix.size(), first.find('.') - prefix.size());
-}
-
 // Ticks [begin, end) of a log.
 struct Ticks {
   const Trace& log;
@@ -128,7 +121,7 @@ bool write_fields(const Ticks& ticks, std::string_view topic,
     for (const std::size_t tick : released) {
       history.add(ticks.time_s(tick), case_value(ticks, tick, channel));
     }
-    history.write(topic, channel.name.substr(channel.name.find('.') + 1), toml);
+    history.write(topic, channel.field(), toml);
     is_constant = is_constant && history.is_constant();
   }
   return is_constant;
@@ -145,11 +138,10 @@ void write_topic(const Ticks& ticks, std::string_view topic, std::uint32_t bit, 
 }
 
 void write_topics(const Ticks& ticks, TomlWriter& toml) {
-  write_fields(ticks, step_topic_of(ticks.module), all_of(ticks), toml);
+  write_fields(ticks, info_of(ticks.module).step_topic, all_of(ticks), toml);
   for (const std::string_view topic : updated_topics(ticks.module)) {
-    const auto bit = find_channel(ticks.module, fmt::format("in/updated.{}", topic));
-    if (topic == "parameter_update" || !bit) continue;
-    write_topic(ticks, topic, channels()[*bit].bit, toml);
+    if (topic == "parameter_update") continue;
+    write_topic(ticks, topic, channels()[updated_channel(ticks.module, topic)].bit, toml);
   }
 }
 
@@ -199,13 +191,13 @@ std::string case_name(const Trace& log, const LogPart& part) {
   if (std::isfinite(part.to_s)) name += fmt::format("_to_{}s", part.to_s);
   // A log of the cascade becomes one case for each unit, so the name has the unit.
   const Module module = module_of(log.present);
-  if (module != Module::mc_att_control) name += fmt::format("_{}", name_of(module));
+  if (info_of(module).is_of_cascade) name += fmt::format("_{}", name_of(module));
   return identifier(name);
 }
 
 Result<Ticks> ticks_of(const Trace& log, const LogPart& part) {
   const Module module = module_of(log.present);
-  const std::string topic(step_topic_of(module));
+  const std::string topic(info_of(module).step_topic);
   const Ticks whole{log, 0, log.samples.size(), module};
   if (whole.size() < 2) return fail_at(log.source, "has fewer than 2 samples of " + topic);
   const double length_s = seconds(whole.duration_us());
@@ -251,7 +243,7 @@ std::string reason(const Ticks& ticks, const std::vector<std::string>& notes) {
       info_of(ticks.module).title, std::filesystem::path(ticks.log.source).filename().string(),
       seconds(ticks[ticks.begin].in.timestamp - first),
       seconds(ticks[ticks.begin].in.timestamp - first + ticks.duration_us()),
-      step_topic_of(ticks.module));
+      info_of(ticks.module).step_topic);
   for (const std::string& note : notes) text += fmt::format("\n- {}", note);
   return text;
 }
@@ -263,13 +255,13 @@ Result<LogCase> case_of_log(const Trace& log, const std::string& profile, const 
   const auto ticks = ticks_of(log, part);
   if (!ticks) return tl::unexpected(ticks.error());
   if (auto checked = check_length(*ticks); !checked) return tl::unexpected(checked.error());
-  LogCase made{case_name(log, part), "", std::string(step_topic_of(ticks->module)), ticks->size(),
-               seconds(ticks->duration_us())};
+  LogCase made{case_name(log, part), "", std::string(info_of(ticks->module).step_topic),
+               ticks->size(), seconds(ticks->duration_us())};
   TomlWriter toml;
   toml.set("", "schema", schema_version);
   toml.set("", "profiles", std::vector<std::string>{profile});
   toml.set("", "group", log_case_group);
-  if (ticks->module != Module::mc_att_control) toml.set("", "module", name_of(ticks->module));
+  if (info_of(ticks->module).is_of_cascade) toml.set("", "module", name_of(ticks->module));
   toml.set("", "why", reason(*ticks, notes));
   toml.set("", "duration_s", made.duration_s);
   toml.set("unit", "start_s", seconds((*ticks)[ticks->begin].in.timestamp));

@@ -99,7 +99,7 @@ void parse_module(const TomlTable& root, Case& parsed) {
     parse_module_of_flight(root, parsed);
   } else if (root.has(key)) {
     const auto module = module_named(root.text(key));
-    const bool is_unit = module && info_of(*module).has_updated;
+    const bool is_unit = module && info_of(*module).is_unit();
     if (!is_unit) root.error(key, "must be mc_att_control, attitude_unit or rate_unit");
     if (parsed.module != Module::mc_att_control) {
       root.error(key, "is not for cases of mixer and battery estimate");
@@ -139,7 +139,7 @@ std::vector<ParameterStimulus> parse_parameters(const TomlTable& root, const Cas
   for (const std::string& name : table.keys()) {
     parameters.push_back({name, parse_signal(table, name)});
     check_parameter_name(table, name, parsed);
-    if (!info_of(parsed.module).has_updated && varies(parameters.back().signal)) {
+    if (!info_of(parsed.module).is_unit() && varies(parameters.back().signal)) {
       table.error(name, "does not change while it runs: give one value");
     }
   }

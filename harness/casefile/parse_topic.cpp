@@ -1,7 +1,6 @@
 #include "harness/casefile/parse_topic.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 
@@ -16,18 +15,7 @@
 namespace attest {
 namespace {
 
-constexpr std::string_view input_prefix = "in/";
-constexpr std::string_view control_state = "control_state";
 constexpr std::string_view control_mode = "vehicle_control_mode";
-
-std::string_view topic_of(std::string_view channel) {
-  const std::string_view name = channel.substr(input_prefix.size());
-  return name.substr(0, name.find('.'));
-}
-
-std::string_view field_of(std::string_view channel) {
-  return channel.substr(channel.find('.') + 1);
-}
 
 constexpr const char* not_a_flag =
     "is a flag: a constant, a step or samples of whole numbers from 0 to 255";
@@ -147,12 +135,11 @@ void parse_flight_mode(const TomlTable& table, Module module, TopicStimulus& top
   }
   const auto sequence = parse_modes(table, key, module);
   if (!sequence) return;
-  const bool has_transition = module == Module::mc_att_control;
+  const bool has_transition = !info_of(module).is_of_cascade;
   const auto transition = has_transition ? parse_in_transition(table) : std::nullopt;
   const auto& flags = flag_names(module);
   for (FieldStimulus& field : topic.fields) {
-    const auto found =
-        std::find(flags.begin(), flags.end(), field_of(channels()[field.channel].name));
+    const auto found = std::find(flags.begin(), flags.end(), channels()[field.channel].field());
     if (found == flags.end()) continue;  // flag_armed
     const auto flag = static_cast<std::size_t>(found - flags.begin());
     field.signal = sequence->signal_of([&](const FlightMode& mode) { return mode.flags[flag]; });
@@ -225,8 +212,8 @@ TopicStimulus baseline_topic(Module module, std::string_view name, std::uint32_t
   TopicStimulus topic{std::string(name), updated_bit, {}, {}, {}};
   const auto table = channels();
   for (std::size_t i = 0; i < table.size(); ++i) {
-    const bool is_field = table[i].module == module && table[i].name.starts_with(input_prefix) &&
-                          table[i].type != ChannelType::bit && topic_of(table[i].name) == name;
+    const bool is_field = table[i].module == module && !table[i].is_output() &&
+                          table[i].type != ChannelType::bit && table[i].topic() == name;
     if (!is_field) continue;
     const auto of_hover = is_flight ? baseline_of_hover(table[i]) : std::nullopt;
     const double value =
@@ -236,41 +223,18 @@ TopicStimulus baseline_topic(Module module, std::string_view name, std::uint32_t
   return topic;
 }
 
-// The topic that is new at every step of a unit, and has no updated bit.
-std::string_view sample_of(Module module) {
-  switch (module) {
-    case Module::attitude_unit:
-      return "vehicle_attitude";
-    case Module::rate_unit:
-      return "vehicle_angular_velocity";
-    default:
-      return control_state;
-  }
-}
-
-std::vector<TopicStimulus> unit_topics(Module module, bool is_flight) {
-  std::vector<TopicStimulus> topics{baseline_topic(module, sample_of(module), 0, is_flight)};
-  for (const Channel& channel : channels()) {
-    if (channel.module != module || channel.type != ChannelType::bit) continue;
-    if (channel.bit == ATTEST_UPDATED_PARAMETER_UPDATE) continue;
-    topics.push_back(baseline_topic(module, field_of(channel.name), channel.bit, is_flight));
+// Of a unit: its step topic, and each topic with an updated bit. Of another module: all its topics.
+std::vector<TopicStimulus> baseline_topics(const ModuleInfo& of, bool is_flight) {
+  std::vector<TopicStimulus> topics;
+  for (const Channel& channel : channels().subspan(1)) {  // 0 is the timestamp
+    if (channel.module != of.module || channel.is_output()) continue;
+    const bool has_bit = of.is_unit() && channel.topic() != of.step_topic;
+    const bool is_bit = channel.type == ChannelType::bit;
+    if (has_bit != is_bit || channel.bit == ATTEST_UPDATED_PARAMETER_UPDATE) continue;
+    if (!topics.empty() && topics.back().topic == channel.topic()) continue;
+    topics.push_back(baseline_topic(of.module, channel.topic(), channel.bit, is_flight));
   }
   return topics;
-}
-
-std::vector<TopicStimulus> baseline_topics(Module module, bool is_flight) {
-  switch (module) {
-    case Module::mixer:
-      return {baseline_topic(module, "actuator_controls_0", 0, false),
-              baseline_topic(module, "mixer", 0, false)};
-    case Module::battery_status:
-      return {baseline_topic(module, "battery", 0, false)};
-    case Module::mc_att_control:
-    case Module::attitude_unit:
-    case Module::rate_unit:
-      return unit_topics(module, is_flight);
-  }
-  return {};
 }
 
 // The keys of the topic's quaternions: "q" of "q[0]".
@@ -278,7 +242,7 @@ std::vector<std::string> quaternions_of(const TopicStimulus& topic) {
   std::vector<std::string> keys;
   for (const FieldStimulus& field : topic.fields) {
     const Channel& channel = channels()[field.channel];
-    const std::string_view name = field_of(channel.name);
+    const std::string_view name = channel.field();
     if (channel.quantity != Quantity::quaternion || !name.ends_with("[0]")) continue;
     keys.emplace_back(name.substr(0, name.size() - 3));
   }
@@ -288,7 +252,7 @@ std::vector<std::string> quaternions_of(const TopicStimulus& topic) {
 std::size_t index_of(const std::string& field, const TopicStimulus& topic) {
   const auto found = std::find_if(
       topic.fields.begin(), topic.fields.end(),
-      [&](const FieldStimulus& one) { return field_of(channels()[one.channel].name) == field; });
+      [&](const FieldStimulus& one) { return channels()[one.channel].field() == field; });
   return static_cast<std::size_t>(found - topic.fields.begin());
 }
 
@@ -296,7 +260,7 @@ void parse_topic(const TomlTable& table, TopicStimulus& topic) {
   const Module module = channels()[topic.fields.front().channel].module;
   if (topic.topic == control_mode) parse_flight_mode(table, module, topic);
   for (FieldStimulus& field : topic.fields) {
-    const std::string name(field_of(channels()[field.channel].name));
+    const std::string name(channels()[field.channel].field());
     parse_field(table, name, field);
   }
   for (const std::string& key : quaternions_of(topic)) {
@@ -307,11 +271,9 @@ void parse_topic(const TomlTable& table, TopicStimulus& topic) {
 }
 
 // Whether the plant or the actuators compute the topic in a flight.
-bool is_computed(const std::string& topic) {
-  constexpr std::array<std::string_view, 5> computed{control_state, "multirotor_motor_limits",
-                                                     "vehicle_attitude", "vehicle_angular_velocity",
-                                                     "control_allocator_status"};
-  return std::find(computed.begin(), computed.end(), topic) != computed.end();
+bool is_computed(const std::string& topic, Module module) {
+  return topic == info_of(module).step_topic || topic == "multirotor_motor_limits" ||
+         topic == "control_allocator_status";
 }
 
 void leave_out_computed(const TomlTable& root, Module module, std::vector<TopicStimulus>& topics) {
@@ -320,7 +282,7 @@ void leave_out_computed(const TomlTable& root, Module module, std::vector<TopicS
     // file's.
     const bool is_own = module == Module::rate_unit && topic.topic == "vehicle_rates_setpoint";
     if (is_own) return !root.has(topic.topic);
-    if (!is_computed(topic.topic)) return false;
+    if (!is_computed(topic.topic, module)) return false;
     if (root.has(topic.topic)) {
       root.table(topic.topic);
       root.error(topic.topic, "comes from the plant in a flight; see [flight]");
@@ -332,7 +294,7 @@ void leave_out_computed(const TomlTable& root, Module module, std::vector<TopicS
 }  // namespace
 
 std::vector<TopicStimulus> parse_topics(const TomlTable& root, Module module, bool is_flight) {
-  std::vector<TopicStimulus> topics = baseline_topics(module, is_flight);
+  std::vector<TopicStimulus> topics = baseline_topics(info_of(module), is_flight);
   if (is_flight) leave_out_computed(root, module, topics);
   for (TopicStimulus& topic : topics) {
     if (root.has(topic.topic)) parse_topic(root.table(topic.topic), topic);

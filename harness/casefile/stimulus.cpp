@@ -271,7 +271,7 @@ void Stimulus::tick(std::size_t tick, Nanoseconds now, Sample& sample,
   sample.in.updated = 0;
   for (Publisher& publisher : impl_->publishers) publisher.tick(now, sample);
   impl_->parameters.tick(tick, now, sample, changes);
-  if (!info_of(impl_->module).has_updated) sample.in.updated = 0;
+  if (!info_of(impl_->module).is_unit()) sample.in.updated = 0;
 }
 
 namespace {

@@ -48,7 +48,7 @@ bool is_output(const std::string& name, bool is_of_controller) {
   return std::any_of(all.begin(), all.end(), [&](const ModuleInfo& info) {
     const bool is_controller = info.module == Module::mc_att_control;
     const auto channel = find_channel(info.module, "out/" + name);
-    return info.has_updated && is_controller == is_of_controller && channel &&
+    return info.is_unit() && is_controller == is_of_controller && channel &&
            channels()[*channel].type == ChannelType::f32;
   });
 }

@@ -27,7 +27,7 @@ Result<std::vector<SelectedCase>> open_loop_cases(const TimeCommandOptions& opti
   auto cases = options.select.cases_in(suite.case_folders());
   if (!cases) return cases;
   std::erase_if(*cases, [](const SelectedCase& one) {
-    return one.the_case.flight || !info_of(one.the_case.module).has_updated;
+    return one.the_case.flight || !info_of(one.the_case.module).is_unit();
   });
   if (cases->empty())
     return fail("no open-loop case of a unit is selected, and only these can be timed");

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "harness/compare/publication.hpp"
+#include "harness/trace/output_topics.hpp"
 
 namespace attest {
 namespace {

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "harness/compare/followed_setpoint.hpp"
-#include "harness/compare/publication.hpp"
+#include "harness/trace/output_topics.hpp"
 
 namespace attest {
 namespace {

@@ -23,11 +23,9 @@ std::vector<Topic> topics_in(const ChannelSet& present) {
   const auto table = channels();
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (!present[i] || !table[i].is_output()) continue;
-    std::string_view name = table[i].name.substr(table[i].name.find('/') + 1);
-    const std::string_view field = name.substr(name.find('.') + 1);
-    name = name.substr(0, name.find('.'));
+    const std::string_view name = table[i].topic();
     if (topics.empty() || topics.back().name != name) topics.push_back({name, nullptr, {}});
-    if (field == "published")
+    if (table[i].is_published_flag())
       topics.back().published = &table[i];
     else
       topics.back().fields.push_back(i);

@@ -34,7 +34,7 @@ Topics topics_of(const Trace& got, const Trace& want) {
     Signal signal{std::string(channel.name), {}, {}};
     for (const Sample& sample : got.samples) signal.got.push_back(value_of(channel, sample));
     for (const Sample& sample : want.samples) signal.want.push_back(value_of(channel, sample));
-    topics[signal.name.substr(0, signal.name.find('.'))].push_back(std::move(signal));
+    topics[fmt::format("out/{}", channel.topic())].push_back(std::move(signal));
   }
   return topics;
 }

@@ -1,8 +1,8 @@
 #include "harness/compare/suspected_stages.hpp"
 
 #include "harness/compare/followed_setpoint.hpp"
-#include "harness/compare/publication.hpp"
 #include "harness/core/agreement.hpp"
+#include "harness/trace/output_topics.hpp"
 
 namespace attest {
 namespace {

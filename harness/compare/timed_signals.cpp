@@ -133,7 +133,7 @@ using NamesInLog = std::map<std::string_view, std::string>;
 
 NamesInLog names_in_log(const std::vector<std::string>& columns) {
   const Module of_columns = module_with(columns);
-  const Module module = info_of(of_columns).has_updated ? of_columns : Module::mc_att_control;
+  const Module module = info_of(of_columns).is_unit() ? of_columns : Module::mc_att_control;
   NamesInLog found;
   for (const LogTopic& topic : log_topics(module)) {
     for (const LogField& field : topic.fields) {

@@ -10,12 +10,8 @@
 namespace attest {
 namespace {
 
-constexpr std::string_view of_every_step[] = {"in/control_state.", "in/vehicle_attitude.",
-                                              "in/vehicle_angular_velocity."};
-
 bool is_new_in_every_step(const Channel& channel) {
-  return std::any_of(std::begin(of_every_step), std::end(of_every_step),
-                     [&](std::string_view topic) { return channel.name.starts_with(topic); });
+  return channel.topic() == info_of(channel.module).step_topic;
 }
 
 double shaking(std::size_t tick, std::size_t channel) {

@@ -16,20 +16,6 @@ MotorLimits limits_of(const actuation::Saturation& saturation) {
 
 }  // namespace
 
-bool is_armed(Module module, const Sample& sample) {
-  switch (module) {
-    case Module::mc_att_control:
-      return sample.in.actuator_armed.armed != 0;
-    case Module::rate_unit:
-      return sample.rate_in.vehicle_control_mode.flag_armed != 0;
-    case Module::attitude_unit:
-    case Module::mixer:
-    case Module::battery_status:
-      break;
-  }
-  return false;
-}
-
 Actuators::Actuators(const Vehicle& vehicle, Module module)
     : vehicle_(vehicle), module_(module), mixer_(actuation::parse_mixer(vehicle.mixer).value()) {
   if (module == Module::rate_unit) allocator_.emplace(vehicle);
@@ -38,7 +24,7 @@ Actuators::Actuators(const Vehicle& vehicle, Module module)
 
 void Actuators::follow(const Sample& sample) {
   if (module_ == Module::attitude_unit) return;
-  if (!is_armed(module_, sample)) {
+  if (!info_of(module_).is_armed(sample)) {
     commands_.fill(-1);
   } else if (allocator_) {
     allocate(sample.rate_out);

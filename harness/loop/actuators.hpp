@@ -46,7 +46,4 @@ class Actuators {
   std::array<double, rotors_max> speeds_{};
 };
 
-// The flag that arms the motors, in the inputs of a module; false for a module without this flag.
-bool is_armed(Module module, const Sample& sample);
-
 }  // namespace attest

@@ -197,7 +197,7 @@ bool makes_another(Port& port, const Subject& subject) {
   const auto all = modules();
   return std::any_of(all.begin(), all.end(), [&](const ModuleInfo& info) {
     const bool may_have = contains(profile->modules & port.modules(), info.module);
-    return may_have && info.has_updated && info.module != subject.module &&
+    return may_have && info.is_unit() && info.module != subject.module &&
            port.create_unit(info.module, subject.profile, "") != nullptr;
   });
 }

@@ -60,7 +60,7 @@ class UnitTask {
   const std::vector<ParameterChange>& changes() const { return changes_; }
   const MotorCommands& commands() const { return actuators_.commands(); }
   const Saturation& saturation() const { return actuators_.saturation(); }
-  bool is_armed() const { return attest::is_armed(module_, sample_); }
+  bool is_armed() const { return info_of(module_).is_armed(sample_); }
   float throttle() const;  // collective thrust, 0..1 upwards; not for the attitude unit
 
  private:

@@ -85,7 +85,7 @@ bool makes_unit_of(Port& port, const std::string& profile) {
   const ModuleSet own = (known ? known->modules : only(Module::mc_att_control)) & port.modules();
   const auto all = modules();
   return std::any_of(all.begin(), all.end(), [&](const ModuleInfo& info) {
-    const bool is_asked = contains(own, info.module) && info.has_updated;
+    const bool is_asked = contains(own, info.module) && info.is_unit();
     return is_asked && port.create_unit(info.module, profile, "") != nullptr;
   });
 }

@@ -198,8 +198,6 @@ bool is_value_of(const Channel& channel, double value) {
   return value >= 0 && value <= highest && value == std::floor(value);
 }
 
-bool is_published_flag(const Channel& channel) { return channel.name.ends_with(".published"); }
-
 // The channels of all columns. Error: two columns of one channel.
 Result<ChannelSet> present_in(const Table& table, const ColumnChannels& channel_of,
                               const std::string& file) {
@@ -223,7 +221,7 @@ void clear_outputs(const Manifest& manifest, Trace& trace) {
     for (std::size_t i = 0; i < channels().size(); ++i) {
       const Channel& channel = channels()[i];
       if (channel.module != module || !manifest.not_recorded[i]) continue;
-      if (is_published_flag(channel)) set_value(channel, sample, 1);
+      if (channel.is_published_flag()) set_value(channel, sample, 1);
     }
   }
 }

@@ -72,9 +72,8 @@ std::string indented_distance(const Deviation& deviation, Level level) {
 
 // Names the unit of the cascade: in a flight both units have ticks, and outputs of the same name.
 std::string of_unit(const Channel& channel) {
-  const bool is_of_cascade =
-      channel.module == Module::attitude_unit || channel.module == Module::rate_unit;
-  return is_of_cascade ? fmt::format(", {}", info_of(channel.module).title) : "";
+  const ModuleInfo& module = info_of(channel.module);
+  return module.is_of_cascade ? fmt::format(", {}", module.title) : "";
 }
 
 std::string first_deviation(const Deviation& deviation, Level level) {

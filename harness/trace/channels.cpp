@@ -6,13 +6,13 @@
 #include <unordered_map>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "harness/core/agreement.hpp"
 #include "harness/trace/channel_table.hpp"
 
 namespace attest {
 namespace {
-
-constexpr std::string_view updated_prefix = "in/updated.";
 
 template <typename T>
 T load(const Sample& sample, std::size_t offset) {
@@ -50,6 +50,16 @@ const Places& places_of(Module module) {
 }
 
 }  // namespace
+
+std::string_view Channel::topic() const {
+  if (type == ChannelType::bit) return name.substr(name.find('.') + 1);
+  const std::size_t begin = name.find('/') + 1;
+  return name.substr(begin, name.find('.') - begin);
+}
+
+std::string_view Channel::field() const {
+  return type == ChannelType::bit ? "updated" : name.substr(name.find('.') + 1);
+}
 
 std::span<const Channel> channels() { return channel_table; }
 
@@ -122,11 +132,15 @@ Module module_with(std::span<const std::string> names) {
   return best;
 }
 
+std::size_t updated_channel(Module module, std::string_view topic) {
+  return *find_channel(module, fmt::format("in/updated.{}", topic));
+}
+
 std::vector<std::string_view> updated_topics(Module module) {
   std::vector<std::string_view> topics;
   for (const Channel& channel : channel_table) {
     if (channel.module != module || channel.type != ChannelType::bit) continue;
-    topics.push_back(channel.name.substr(updated_prefix.size()));
+    topics.push_back(channel.topic());
   }
   return topics;
 }

@@ -75,6 +75,11 @@ struct Channel {
   std::uint32_t bit;   // for ChannelType::bit, its mask in `updated`; 0 for other types
 
   bool is_output() const { return stage != Stage::input; }
+  // "vehicle_status" and "armed" of "in/vehicle_status.armed". The bit "in/updated.vehicle_status"
+  // has the same topic, and the field "updated". `timestamp` has its name as both.
+  std::string_view topic() const;
+  std::string_view field() const;
+  bool is_published_flag() const { return is_output() && field() == "published"; }
 };
 
 // All channels in column order: timestamp, then for each module its inputs, its in/updated bits and
@@ -110,6 +115,8 @@ std::vector<std::string_view> names_of(const ChannelSet& set);
 // module; mc_att_control if no module has any.
 Module module_with(std::span<const std::string> names);
 
+// The index of in/updated.<topic>. REQUIRES: the module has this bit.
+std::size_t updated_channel(Module module, std::string_view topic);
 // The topics that have a bit in `updated`, in column order: "vehicle_attitude_setpoint", ...
 std::vector<std::string_view> updated_topics(Module module);
 

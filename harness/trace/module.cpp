@@ -11,15 +11,20 @@ namespace {
   Block { offsetof(Sample, member), sizeof(Sample::member) }
 
 constexpr std::array<ModuleInfo, module_count> infos{{
-    {Module::mc_att_control, "mc_att_control", "controller", nullptr, BLOCK(in), BLOCK(out), true},
-    {Module::mixer, "mixer", "mixer", ATTEST_EXTENSION_MIXER, BLOCK(mixer_in), BLOCK(mixer_out),
-     false},
+    {Module::mc_att_control, "mc_att_control", "controller", nullptr, BLOCK(in), BLOCK(out),
+     "control_state", "vehicle_attitude_setpoint", BLOCK(in.timestamp),
+     BLOCK(in.actuator_armed.armed), false},
+    {Module::mixer, "mixer", "mixer", ATTEST_EXTENSION_MIXER, BLOCK(mixer_in), BLOCK(mixer_out)},
     {Module::battery_status, "battery_status", "battery estimate", ATTEST_EXTENSION_BATTERY_STATUS,
-     BLOCK(battery_in), BLOCK(battery_out), false},
+     BLOCK(battery_in), BLOCK(battery_out)},
     {Module::attitude_unit, "attitude_unit", "attitude unit", ATTEST_EXTENSION_ATTITUDE_UNIT,
-     BLOCK(attitude_in), BLOCK(attitude_out), true},
+     BLOCK(attitude_in), BLOCK(attitude_out), "vehicle_attitude", "vehicle_attitude_setpoint",
+     BLOCK(attitude_in.vehicle_attitude.timestamp_sample), BLOCK(attitude_in.vehicle_status.armed),
+     true},
     {Module::rate_unit, "rate_unit", "rate unit", ATTEST_EXTENSION_RATE_UNIT, BLOCK(rate_in),
-     BLOCK(rate_out), true},
+     BLOCK(rate_out), "vehicle_angular_velocity", "vehicle_rates_setpoint",
+     BLOCK(rate_in.vehicle_angular_velocity.timestamp_sample),
+     BLOCK(rate_in.vehicle_control_mode.flag_armed), true},
 }};
 
 #undef BLOCK

@@ -86,8 +86,22 @@ struct ModuleInfo {
   std::string_view title;  // for messages: "battery estimate"
   const char* extension;   // the id that has it: ATTEST_EXTENSION_MIXER; null: controller
   Block in, out;
+  // Only of a unit. Its inputs have `updated`: a bit for each topic that is new.
+  std::string_view step_topic = {};      // the input that is new at every step, without a bit
+  std::string_view setpoint_topic = {};  // the input that the law follows
+  Block sampled = {};                    // the time from which the law computes its dt [us]
+  Block armed = {};                      // the flag that arms the motors, in the inputs
+  bool is_of_cascade = false;            // of v1.14 and later
+
   Block all_inputs() const { return {0, in.offset + in.size}; }  // with the timestamp
-  bool has_updated;  // its inputs have `updated`: a bit for each topic that is new
+  bool is_unit() const { return !step_topic.empty(); }
+  // REQUIRES: a unit.
+  std::uint64_t sampled_us(const Sample& sample) const {
+    return *static_cast<const std::uint64_t*>(sampled.in(sample));
+  }
+  bool is_armed(const Sample& sample) const {
+    return *static_cast<const std::uint8_t*>(armed.in(sample)) != 0;
+  }
 };
 
 // In the order of Module.

@@ -4,25 +4,20 @@
 #include <cstring>
 #include <vector>
 
+#include <fmt/format.h>
+
 namespace attest {
 namespace {
-
-constexpr std::string_view output_prefix = "out/";
-constexpr std::string_view flag_suffix = ".published";
-
-std::string_view topic_of(std::string_view name) {
-  return name.substr(output_prefix.size(), name.find('.') - output_prefix.size());
-}
 
 // The topic whose flag is channel `flag`. In the ABI a topic is a struct that ends with
 // `published`.
 OutputTopic topic_with_flag(std::size_t flag) {
   const Channel& published = channels()[flag];
-  OutputTopic topic{topic_of(published.name), flag, {published.offset, 1}};
+  OutputTopic topic{published.topic(), flag, {published.offset, 1}};
   std::size_t begin = published.offset;
   for (const Channel& channel : channels()) {
-    const bool is_in_it = channel.is_output() && channel.module == published.module &&
-                          topic_of(channel.name) == topic.name;
+    const bool is_in_it =
+        channel.is_output() && channel.module == published.module && channel.topic() == topic.name;
     if (is_in_it) begin = std::min(begin, channel.offset);
   }
   topic.block = {begin, published.offset + 1 - begin};
@@ -33,8 +28,8 @@ std::vector<OutputTopic> topics_of(Module module) {
   std::vector<OutputTopic> topics;
   for (std::size_t i = 0; i < channels().size(); ++i) {
     const Channel& channel = channels()[i];
-    const bool is_flag = channel.is_output() && channel.name.ends_with(flag_suffix);
-    if (is_flag && channel.module == module) topics.push_back(topic_with_flag(i));
+    if (channel.is_published_flag() && channel.module == module)
+      topics.push_back(topic_with_flag(i));
   }
   return topics;
 }
@@ -52,13 +47,27 @@ std::span<const OutputTopic> output_topics(Module module) {
   return of_modules[static_cast<std::size_t>(module)];
 }
 
-bool is_published(const OutputTopic& topic, const Sample& sample) {
-  return value_of(channels()[topic.published], sample) != 0;
+std::optional<std::size_t> published_flag(const Channel& output) {
+  static const auto flags = [] {
+    std::array<std::optional<std::size_t>, max_channels> all;
+    for (std::size_t i = 0; i < channels().size(); ++i) {
+      const Channel& channel = channels()[i];
+      if (!channel.is_output()) continue;
+      all[i] = find_channel(channel.module, fmt::format("out/{}.published", channel.topic()));
+    }
+    return all;
+  }();
+  return flags[static_cast<std::size_t>(&output - channels().data())];
+}
+
+bool is_published(const Channel& output, const Sample& sample) {
+  const auto flag = published_flag(output);
+  return !flag || value_of(channels()[*flag], sample) != 0;
 }
 
 void keep_unpublished(Module module, const Sample& before, Sample& now) {
   for (const OutputTopic& topic : output_topics(module)) {
-    if (is_published(topic, now)) continue;
+    if (is_published(channels()[topic.published], now)) continue;
     std::memcpy(topic.block.in(now), topic.block.in(before), topic.block.size);
     set_value(channels()[topic.published], now, 0);
   }

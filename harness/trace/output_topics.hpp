@@ -2,6 +2,7 @@
 // not publish a topic, its fields other than `published` keep the values last published.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -18,7 +19,12 @@ struct OutputTopic {
 // In column order. Empty for a module whose outputs are new in every step.
 std::span<const OutputTopic> output_topics(Module module);
 
-bool is_published(const OutputTopic& topic, const Sample& sample);
+// The flag of an output's topic, as an index into channels(). Empty: the topic is new in every
+// step.
+std::optional<std::size_t> published_flag(const Channel& output);
+
+// Whether the topic of this output was published. REQUIRES: an output of the module of `sample`.
+bool is_published(const Channel& output, const Sample& sample);
 
 // For each topic that `now` does not publish, copies its fields other than `published` from
 // `before`, the previous step.

@@ -70,9 +70,8 @@ void add_once(std::string_view word, std::vector<std::string>& words) {
   if (std::find(words.begin(), words.end(), word) == words.end()) words.emplace_back(word);
 }
 
-std::string_view topic_of(std::string_view channel) {
-  channel.remove_prefix(channel.find('/') + 1);
-  return channel.substr(0, channel.find('.'));
+const Channel& channel_of(const Assumption& one, const ulog::ModuleContents& log) {
+  return channels()[*find_channel(log.module(), one.channel)];
 }
 
 bool has(const std::vector<std::string>& words, std::string_view word) {
@@ -80,11 +79,7 @@ bool has(const std::vector<std::string>& words, std::string_view word) {
 }
 
 bool is_logged(const Assumption& one, const ulog::ModuleContents& log) {
-  return log.input(topic_of(one.channel))->size() > 0;
-}
-
-std::uint32_t updated_bit(Module module, std::string_view topic) {
-  return channels()[*find_channel(module, fmt::format("in/updated.{}", topic))].bit;
+  return log.input(channel_of(one, log).topic())->size() > 0;
 }
 
 }  // namespace
@@ -111,8 +106,9 @@ std::vector<std::string> assume(const std::vector<std::string>& words,
   for (const Assumption& one : assumptions(log.module())) {
     const bool holds = words.empty() ? one.by_default : has(words, one.word);
     if (!holds || is_logged(one, log)) continue;
-    set_value(channels()[*find_channel(log.module(), one.channel)], sample, one.value);
-    sample.in.updated |= updated_bit(log.module(), topic_of(one.channel));
+    const Channel& channel = channel_of(one, log);
+    set_value(channel, sample, one.value);
+    sample.in.updated |= channels()[updated_channel(log.module(), channel.topic())].bit;
     add_once(one.word, used);
   }
   return used;
@@ -134,7 +130,7 @@ Result<void> check_assumed(const std::vector<std::string>& words,
     for (const ulog::ModuleContents* log : modules) {
       for (const Assumption& one : assumptions(log->module())) {
         if (one.word != word) continue;
-        if (is_logged(one, *log)) logged = topic_of(one.channel);
+        if (is_logged(one, *log)) logged = channel_of(one, *log).topic();
         has_effect = has_effect || !is_logged(one, *log);
       }
     }

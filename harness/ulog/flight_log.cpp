@@ -27,11 +27,6 @@ using ulog::ModuleContents;
 
 constexpr const char* fastest_rate = "IMU_GYRO_RATEMAX";  // of the rate unit [Hz]
 
-// The topic that a log must have for a module, in addition to steps and outputs.
-std::string setpoint_of(Module module) {
-  return module == Module::rate_unit ? "vehicle_rates_setpoint" : "vehicle_attitude_setpoint";
-}
-
 // The output topics of a module, for a message.
 std::string outputs_of(Module module) {
   switch (module) {
@@ -57,7 +52,7 @@ std::string lacking(const ModuleContents& log, bool is_of_attest) {
   const LogSeries& steps = log.steps();
   if (steps.size() == 0) return fmt::format("no sample of the topic {}", steps.name());
   if (is_of_attest) return "";
-  const LogSeries& setpoint = *log.input(setpoint_of(log.module()));
+  const LogSeries& setpoint = *log.input(info_of(log.module()).setpoint_topic);
   if (setpoint.size() == 0) return fmt::format("no sample of the topic {}", setpoint.name());
   if (!log.has_outputs()) {
     return fmt::format("no sample of {}, so there is nothing to compare a port with",
@@ -242,7 +237,7 @@ class LogReading {
     if (std::string missing = lacking(log, log_.is_of_attest()); !missing.empty()) {
       unit.module = log.module();
       unit.step_topic = log.steps().name();
-      unit.trace.present.set(0).set(*find_channel(log.module(), "in/updated.parameter_update"));
+      unit.trace.present.set(0).set(updated_channel(log.module(), "parameter_update"));
       unit.not_judged = "the log has " + std::move(missing);
       unit.trace.source = path_.string();
     } else {
@@ -252,9 +247,9 @@ class LogReading {
   }
 
   LoggedUnit made(ModuleContents& log) {
-    const LogRules rules = log_.is_of_attest()                      ? LogRules::attest
-                           : log.module() == Module::mc_att_control ? LogRules::controller
-                                                                    : LogRules::cascade;
+    const LogRules rules = log_.is_of_attest()                   ? LogRules::attest
+                           : info_of(log.module()).is_of_cascade ? LogRules::cascade
+                                                                 : LogRules::controller;
     add_notes(log, flight_.notes);
     Sample first = first_sample(log, rules);
     std::vector<std::string> used;

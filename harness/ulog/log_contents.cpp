@@ -24,7 +24,7 @@ class ContentsReader {
  public:
   explicit ContentsReader(Reader& reader) : reader_(reader) {
     for (const ModuleInfo& info : modules()) {
-      if (info.has_updated) log_.modules.emplace_back(info.module);
+      if (info.is_unit()) log_.modules.emplace_back(info.module);
     }
   }
 
@@ -87,7 +87,7 @@ class ContentsReader {
   // instance 1 of a setpoint.
   void accept_every_publisher() {
     for (ModuleContents& module : log_.modules) {
-      if (module.module() == Module::mc_att_control) continue;
+      if (!info_of(module.module()).is_of_cascade) continue;
       for (LogSeries& series : module.series()) series.accept_every_publisher();
     }
   }
@@ -121,7 +121,8 @@ class ContentsReader {
 
 std::string Release::to_string() const { return fmt::format("v{}.{}.{}", major, minor, patch); }
 
-ModuleContents::ModuleContents(Module module) : module_(module), step_topic_(step_topic(module)) {
+ModuleContents::ModuleContents(Module module)
+    : module_(module), step_topic_(info_of(module).step_topic) {
   for (LogTopic& topic : log_topics(module)) series_.emplace_back(std::move(topic));
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 namespace attest {
 namespace {
@@ -21,7 +20,7 @@ constexpr StateOfChannel states[] = {
 };
 
 std::optional<LogState> state_of(const Channel& channel) {
-  if (channel.module == Module::mc_att_control) return std::nullopt;  // has both flags
+  if (!info_of(channel.module).is_of_cascade) return std::nullopt;  // has both flags
   const auto* const found =
       std::find_if(std::begin(states), std::end(states),
                    [&](const StateOfChannel& one) { return one.channel == channel.name; });
@@ -37,31 +36,22 @@ float if_absent(std::string_view channel) {
   return channel == "in/vehicle_local_position.heading_good_for_control" ? 1 : 0;
 }
 
-// "vehicle_status" and "armed" of "in/vehicle_status.armed".
-std::pair<std::string, std::string> topic_and_field(std::string_view channel) {
-  channel.remove_prefix(channel.find('/') + 1);
-  const auto dot = channel.find('.');
-  return {std::string(channel.substr(0, dot)), std::string(channel.substr(dot + 1))};
-}
-
-LogTopic& topic_in(std::vector<LogTopic>& topics, const std::string& name, bool is_output) {
+LogTopic& topic_in(std::vector<LogTopic>& topics, std::string_view name, bool is_output) {
   const auto known = std::find_if(topics.begin(), topics.end(), [&](const LogTopic& one) {
     return one.name == name && one.is_output == is_output;
   });
-  return known != topics.end() ? *known : topics.emplace_back(LogTopic{name, is_output});
+  return known != topics.end() ? *known
+                               : topics.emplace_back(LogTopic{std::string(name), is_output});
 }
 
 void add(std::size_t index, std::vector<LogTopic>& topics) {
   const Channel& channel = channels()[index];
-  auto [topic, field] = topic_and_field(channel.name);
-  if (channel.type == ChannelType::bit) {
-    topic_in(topics, field, false).is_new = index;
-  } else if (channel.is_output() && field == "published") {
-    topic_in(topics, topic, true).is_new = index;
+  LogTopic& topic = topic_in(topics, channel.topic(), channel.is_output());
+  if (channel.type == ChannelType::bit || channel.is_published_flag()) {
+    topic.is_new = index;
   } else {
-    if (field == "timestamp") field = publication_time;
-    topic_in(topics, topic, channel.is_output())
-        .fields.push_back({index, std::move(field), state_of(channel), if_absent(channel.name)});
+    const auto field = channel.field() == "timestamp" ? publication_time : channel.field();
+    topic.fields.push_back({index, std::string(field), state_of(channel), if_absent(channel.name)});
   }
 }
 
@@ -84,13 +74,6 @@ std::vector<LogTopic> log_topics(Module module) {
     if (!topic.is_output && std::any_of(topics.begin(), topics.end(), is_twin)) topic.multi_id = 1;
   }
   return topics;
-}
-
-std::string step_topic(Module module) {
-  const auto topics = log_topics(module);
-  return std::find_if(topics.begin(), topics.end(),
-                      [](const LogTopic& topic) { return !topic.is_output && !topic.is_new; })
-      ->name;
 }
 
 }  // namespace attest

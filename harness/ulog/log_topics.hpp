@@ -44,11 +44,7 @@ struct LogTopic {
   std::optional<std::size_t> is_new = {};  // its updated bit or published flag; empty: always new
 };
 
-// In the order of the channels. The topic `parameter_update` has no fields. REQUIRES: the module
-// has updated bits (ModuleInfo::has_updated).
+// In the order of the channels. The topic `parameter_update` has no fields. REQUIRES: a unit.
 std::vector<LogTopic> log_topics(Module module);
-
-// The input topic that is new at each step, for example "vehicle_attitude". REQUIRES: as above.
-std::string step_topic(Module module);
 
 }  // namespace attest

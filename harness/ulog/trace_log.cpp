@@ -168,7 +168,7 @@ std::pair<std::string, std::string> plant_field(std::string_view path, Module mo
   std::string topic(path.substr(0, path.find_first_of(".[")));
   const bool is_known = std::any_of(layout.begin(), layout.end(),
                                     [&](const LogTopic& one) { return one.name == topic; });
-  if (is_known && module != Module::mc_att_control) topic += "_groundtruth";
+  if (is_known && info_of(module).is_of_cascade) topic += "_groundtruth";
   if (dot != path.npos) return {topic, std::string(path.substr(dot + 1))};
   return {topic, fmt::format("value{}", path.substr(std::min(path.find('['), path.size())))};
 }
@@ -234,7 +234,7 @@ Result<void> write_ticks(const Trace& trace, const Topics& topics, ulog::Writer&
 
 Result<void> write_log(AtomicFile file, const Trace& trace) {
   const Module module = module_of(trace.present);
-  if (!info_of(module).has_updated) {
+  if (!info_of(module).is_unit()) {
     return fail_at(file.path().string(),
                    "a ULog is for traces of the controller or of a unit of it; write a .csv");
   }

@@ -5,25 +5,18 @@
 #include <optional>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "harness/ulog/own_topics.hpp"
 #include "harness/ulog/paired_output.hpp"
 
 namespace attest::ulog {
 namespace {
 
-const Channel& bit_of(Module module, const char* topic) {
-  return channels()[*find_channel(module, fmt::format("in/updated.{}", topic))];
-}
-
 // Gives each step the samples of one input topic.
 class PendingRows {
  public:
   PendingRows(const LogSeries& series, Module module, LogRules rules)
       : series_(series), module_(module), rules_(rules) {
-    const auto bit = find_channel(module, "in/updated." + series.name());
-    updated_ = channels()[*bit].bit;
+    updated_ = channels()[updated_channel(module, series.name())].bit;
     is_shared_ = find_channel(module, "out/" + series.name() + ".published").has_value();
   }
 
@@ -98,10 +91,8 @@ class SetpointKnown {
  public:
   SetpointKnown(Module module, LogRules rules) : module_(module), rules_(rules) {
     if (rules != LogRules::cascade) return;
-    const bool is_attitude_unit = module == Module::attitude_unit;
-    setpoint_ =
-        &bit_of(module, is_attitude_unit ? "vehicle_attitude_setpoint" : "vehicle_rates_setpoint");
-    mode_ = &bit_of(module, "vehicle_control_mode");
+    setpoint_ = &channels()[updated_channel(module, info_of(module).setpoint_topic)];
+    mode_ = &channels()[updated_channel(module, "vehicle_control_mode")];
   }
 
   Known next(const Sample& sample) {
@@ -134,7 +125,7 @@ class TicksOfLog final : public LoggedTicks {
         first_(first),
         rules_(rules),
         file_(std::move(file)),
-        update_(bit_of(log_.module(), "parameter_update")),
+        update_(channels()[updated_channel(log_.module(), "parameter_update")]),
         setpoint_(log_.module(), rules_) {
     present_ = channels_of(log_.module(), "in/");
     present_.set(0);  // timestamp

@@ -17,22 +17,13 @@ bool is_unsupported(const Rate& step, const std::string& what, VectorResult& res
   return true;
 }
 
-bool has_clock(Module module) { return info_of(module).has_updated; }
-
-// The time from which the law computes its dt.
-std::uint64_t sampled_us(const Sample& sample, Module module) {
-  if (module == Module::attitude_unit) return sample.attitude_in.vehicle_attitude.timestamp_sample;
-  if (module == Module::rate_unit) return sample.rate_in.vehicle_angular_velocity.timestamp_sample;
-  return sample.in.timestamp;
-}
-
 // Whether tick k and its sample are at k + 1 periods. `first_tick`: that of `trace`.
 bool is_at_steps(const Trace& trace, const Rate& step, Module module, std::size_t first_tick = 0) {
   for (std::size_t i = 0; i < trace.samples.size(); ++i) {
     const auto k = static_cast<std::int64_t>(first_tick + i);
     const std::uint64_t due_us = timestamp_us(step.tick(k + 1));
     const Sample& sample = trace.samples[i];
-    if (sample.in.timestamp != due_us || sampled_us(sample, module) != due_us) return false;
+    if (sample.in.timestamp != due_us || info_of(module).sampled_us(sample) != due_us) return false;
   }
   return true;
 }
@@ -67,7 +58,7 @@ bool has_other_steps(const Declarations& port, const Case& the_case, const Rate&
 }  // namespace
 
 bool has_fixed_step(const Declarations& port, const Case& the_case) {
-  return has_clock(the_case.module) && port.fixed_step.has_value();
+  return info_of(the_case.module).is_unit() && port.fixed_step.has_value();
 }
 
 Trace inputs_for(const Declarations& port, const Case& the_case, const Rate& rate) {
@@ -96,7 +87,8 @@ bool has_other_steps(const Declarations& port, const Case& the_case, const Rate&
 bool has_other_steps(const Declarations& port, const Trace& recorded, Module module,
                      VectorResult& result, std::size_t first_tick) {
   const auto step = port.fixed_step;
-  if (!step || !has_clock(module) || is_at_steps(recorded, *step, module, first_tick)) return false;
+  if (!step || !info_of(module).is_unit() || is_at_steps(recorded, *step, module, first_tick))
+    return false;
   return is_unsupported(*step, "was not recorded at its steps from one period after zero on",
                         result);
 }

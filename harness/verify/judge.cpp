@@ -77,8 +77,9 @@ bool leaves_values_to_judge(const ChannelSet& not_recorded, const Trace& want) {
   const Module module = module_of(want.present);
   ChannelSet values = channels_of(module, "out/") & ~not_recorded;
   for (const OutputTopic& topic : output_topics(module)) {
+    const Channel& flag = channels()[topic.published];
     values.reset(topic.published);
-    const auto publishes = [&](const Sample& sample) { return is_published(topic, sample); };
+    const auto publishes = [&](const Sample& sample) { return is_published(flag, sample); };
     if (!not_recorded[topic.published] || std::ranges::any_of(want.samples, publishes)) continue;
     values &= ~channels_of(module, fmt::format("out/{}.", topic.name));
   }

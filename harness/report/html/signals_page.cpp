@@ -9,6 +9,7 @@
 #include "harness/report/failure_text.hpp"
 #include "harness/report/html/plot_page.hpp"
 #include "harness/report/text.hpp"
+#include "harness/trace/output_topics.hpp"
 
 namespace attest {
 namespace {
@@ -37,7 +38,7 @@ class SecondsOf {
 
 std::string unit_of_signal(const std::string& name) {
   for (const ModuleInfo& info : modules()) {
-    if (!info.has_updated) continue;
+    if (!info.is_unit()) continue;
     for (const char* prefix : {"out/", "in/"}) {
       if (const auto channel = find_channel(info.module, prefix + name)) {
         return std::string(unit_of(channels()[*channel].quantity));
@@ -144,9 +145,7 @@ PlotGroup plots_of_outputs(const Trace& want, const Trace& got, const char* name
   const ChannelSet outputs = channels_of(module, "out/") & want.present;
   for (std::size_t i = 0; i < channels().size(); ++i) {
     if (!outputs[i] || channels()[i].type != ChannelType::f32) continue;
-    const std::string_view name = channels()[i].name;
-    const auto published =
-        find_channel(module, fmt::format("{}.published", name.substr(0, name.find('.'))));
+    const auto published = published_flag(channels()[i]);
     if (!published) continue;
     group.plots.push_back(plot_of_output(i, channels()[*published], want, got, name_of_want));
   }
