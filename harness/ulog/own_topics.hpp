@@ -21,8 +21,8 @@ bool publishes(Module module, std::string_view topic, const Sample& sample);
 // REQUIRES: a sample of the attitude unit.
 bool is_of_sticks(const Sample& sample);
 
-// Whether the vehicle is armed and off the ground, according to the module's inputs. False for the
-// controller of v1.5.5 and v1.3.4, which has no such inputs.
+// Whether the vehicle is armed and off the ground, according to the inputs. REQUIRES: a unit
+// of the cascade.
 bool is_in_flight(Module module, const Sample& sample);
 
 }  // namespace attest::ulog
