@@ -17,4 +17,7 @@ double baseline_in_flight(const Channel& channel);
 // Empty for other channels.
 std::optional<double> baseline_of_hover(const Channel& channel);
 
+// All inputs of the module, without updated bits.
+Sample baseline_sample(Module module);
+
 }  // namespace attest

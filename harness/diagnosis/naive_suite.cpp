@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "harness/casefile/baseline.hpp"
 #include "harness/compare/compare.hpp"
 #include "harness/golden/expected_outputs.hpp"
 #include "harness/loop/open_loop.hpp"
@@ -21,60 +22,26 @@ void set_quaternion(float (&q)[4], double w, double x, double y, double z) {
   for (int i = 0; i < 4; ++i) q[i] = static_cast<float>(components[i]);
 }
 
-// Inputs of the controller: level, armed in STABILIZED, all topics updated at the first tick.
-Sample hovering(std::size_t tick) {
-  Sample sample{};
-  sample.in.timestamp = 5'000'000 + 4000 * tick;
-  sample.in.updated = ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT;
-  if (tick == 0) sample.in.updated = ~0u;
-  sample.in.control_state.q[0] = 1;
-  sample.in.vehicle_attitude_setpoint.q_d[0] = 1;
-  sample.in.vehicle_attitude_setpoint.thrust = 0.5f;
-  sample.in.vehicle_control_mode = {1, 0, 1, 1, 0, 0};
-  sample.in.actuator_armed.armed = 1;
-  sample.in.vehicle_status.is_rotary_wing = 1;
-  sample.in.battery_status.scale = 1;
+// `sample`: the baseline. The vehicle hovers level, and gets a setpoint in each step. All topics
+// are new in the first.
+Sample held(Module module, std::size_t tick, Sample sample) {
+  const std::uint64_t now = sample.in.timestamp = 5'000'000 + 4000 * tick;
+  const auto setpoint = updated_channel(module, info_of(module).setpoint_topic);
+  sample.in.updated = tick == 0 ? ~0u : channels()[setpoint].bit;
+  if (module == Module::rate_unit) {
+    sample.rate_in.vehicle_angular_velocity.timestamp_sample = now;
+  } else if (module == Module::attitude_unit) {
+    auto& in = sample.attitude_in;
+    in.vehicle_attitude.timestamp = in.vehicle_attitude.timestamp_sample = now;
+    in.vehicle_attitude_setpoint.timestamp = now;
+    in.vehicle_local_position.unaided_heading = 0;
+    in.vehicle_control_mode.flag_control_velocity_enabled = 0;
+    in.vehicle_control_mode.flag_control_position_enabled = 0;
+  } else {
+    sample.in.manual_control_setpoint.z = 0;
+    sample.in.vehicle_control_mode.flag_control_rattitude_enabled = 0;
+  }
   return sample;
-}
-
-// The same for the attitude unit, which gets an attitude setpoint in each step.
-Sample attitude_held(std::size_t tick) {
-  Sample sample{};
-  auto& in = sample.attitude_in;
-  in.timestamp = 5'000'000 + 4000 * tick;
-  in.updated = ATTEST_ATTITUDE_UPDATED_VEHICLE_ATTITUDE_SETPOINT;
-  if (tick == 0) in.updated = ~0u;
-  in.vehicle_attitude.timestamp = in.vehicle_attitude.timestamp_sample = in.timestamp;
-  in.vehicle_attitude.q[0] = in.vehicle_attitude.delta_q_reset[0] = 1;
-  in.vehicle_attitude_setpoint.timestamp = in.timestamp;
-  in.vehicle_attitude_setpoint.q_d[0] = 1;
-  in.vehicle_attitude_setpoint.thrust_body[2] = -0.5f;
-  in.vehicle_status.armed = in.vehicle_status.is_rotary_wing = 1;
-  in.vehicle_local_position.heading_good_for_control = 1;
-  in.vehicle_control_mode.flag_control_attitude_enabled = 1;
-  in.vehicle_control_mode.flag_control_altitude_enabled = 1;
-  return sample;
-}
-
-// The same for the rate unit, which gets a rates setpoint of zero in each step.
-Sample rates_held(std::size_t tick) {
-  Sample sample{};
-  auto& in = sample.rate_in;
-  in.timestamp = 5'000'000 + 4000 * tick;
-  in.updated = ATTEST_RATE_UPDATED_VEHICLE_RATES_SETPOINT;
-  if (tick == 0) in.updated = ~0u;
-  in.vehicle_angular_velocity.timestamp_sample = in.timestamp;
-  in.vehicle_rates_setpoint.thrust_body[2] = -0.5f;
-  in.control_allocator_status.torque_setpoint_achieved = 1;
-  in.battery_status = {1, 1};
-  in.vehicle_control_mode = {1, 0, 1, 1};
-  in.vehicle_status.is_rotary_wing = 1;
-  return sample;
-}
-
-Sample held(Module module, std::size_t tick) {
-  if (module == Module::attitude_unit) return attitude_held(tick);
-  return module == Module::rate_unit ? rates_held(tick) : hovering(tick);
 }
 
 using Q = float[4];
@@ -101,10 +68,11 @@ void set_rates(Sample& sample, Module module, float roll, float pitch, float yaw
 Trace hover(Module module) {
   Trace trace;
   trace.present = channels_of(module);
+  const Sample level = baseline_sample(module);
   Random random(1);
   double roll = 0, pitch = 0;
   for (std::size_t tick = 0; tick < 2500; ++tick) {
-    Sample sample = held(module, tick);
+    Sample sample = held(module, tick, level);
     roll = 0.99 * roll + between(random, -0.003, 0.003);
     pitch = 0.99 * pitch + between(random, -0.003, 0.003);
     if (module != Module::rate_unit) set_quaternion(attitude_in(sample, module), 1, roll, pitch, 0);
@@ -122,13 +90,14 @@ Trace random_attitudes(Module module) {
   Trace trace;
   trace.present = channels_of(module) & ~channels_of(module, "out/");
   trace.present |= channels_of(module, "out/vehicle_rates_setpoint.");
+  const Sample level = baseline_sample(module);
   Random random(2);
   const auto any = [&](float(&q)[4]) {
     set_quaternion(q, between(random, -1, 1), between(random, -1, 1), between(random, -1, 1),
                    between(random, -1, 1));
   };
   for (std::size_t tick = 0; tick < 1000; ++tick) {
-    Sample sample = held(module, tick);
+    Sample sample = held(module, tick, level);
     any(attitude_in(sample, module));
     any(setpoint_in(sample, module));
     trace.samples.push_back(sample);
