@@ -19,6 +19,7 @@
 #include "harness/casefile/parse_topic.hpp"
 #include "harness/casefile/parse_unit.hpp"
 #include "harness/core/file.hpp"
+#include "harness/core/printable.hpp"
 #include "harness/core/suggestion.hpp"
 #include "harness/core/toml.hpp"
 #include "harness/port/profiles.hpp"
@@ -174,10 +175,10 @@ void parse_identity(const TomlTable& root, const fs::path& file, Case& parsed) {
   // Normalised, because otherwise the folder of "./roll.toml" would be named ".".
   const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
   parsed.name = file.stem().string();
-  if (parsed.name.ends_with(".new") || parsed.name.ends_with(".old")) {
-    root.error("group", fmt::format("a case must not be named `{}`: `attest bless` uses such names "
-                                    "for unfinished goldens; rename the file",
-                                    parsed.name));
+  if (printable(parsed.name) != parsed.name) {
+    root.error("group", fmt::format("a case must not be named `{}`: only UTF-8 without control "
+                                    "characters; rename the file",
+                                    printable(parsed.name)));
   }
   parsed.profile = folder.parent_path().filename().string();
   parsed.profiles = parse_profiles(root, parsed.profile);

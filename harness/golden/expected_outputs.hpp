@@ -16,9 +16,9 @@ Result<Trace> reference_outputs(const Subject& subject, Trace inputs);
 
 struct ExpectedOutputs {
   Trace trace;  // the inputs of the vector, with the outputs that are right for them
-  // False: the reference of this build has other bits than the golden, within the tolerances. Then
-  // the trace has the golden's values at all ticks that the golden has, and a port can be judged by
-  // tolerances only.
+  // False: the reference of this build has other bits than the golden, within the tolerances, so a
+  // port can be judged by tolerances only. expected_outputs() then takes the golden's values at all
+  // ticks that the golden has.
   bool is_exact = true;
 };
 

@@ -1,6 +1,6 @@
 #include "harness/golden/golden.hpp"
 
-#include <array>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -13,8 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string key_of(const Case& the_case) { return the_case.group + "/" + the_case.name; }
-
 std::string how_to_bless(const std::string& case_id) {
   return fmt::format("`attest bless --filter '{}' --reason \"...\"` makes it", case_id);
 }
@@ -22,18 +20,30 @@ std::string how_to_bless(const std::string& case_id) {
 // The text of a golden: that at its place, or the new one that a killed bless left next to it.
 // Errors: none of them has the hash of `origin`.
 Result<std::string> blessed_text(const fs::path& file, const GoldenOrigin& origin) {
-  auto text = read_file(file);
-  if (text && sha256(*text) == origin.sha256) return text;
-  auto pending = read_file(new_golden_file(file));
-  if (pending && sha256(*pending) == origin.sha256) return pending;
-  if (!text) return text;
+  // The place is read again at the end, because a bless at the same time moves the new golden
+  // there.
+  for (const fs::path& place : {file, new_golden_file(file), file}) {
+    auto text = read_file(place);
+    if (text && sha256(*text) == origin.sha256) return text;
+  }
+  std::error_code ignored;
   return fail_at(file.string(),
-                 "is not the file that was blessed (its SHA-256 is another than in the "
-                 "provenance.toml of its profile); restore it from version control, or bless it "
-                 "anew");
+                 fmt::format("{}; restore it from version control, or bless it anew",
+                             fs::exists(file, ignored)
+                                 ? "is not the file that was blessed (its SHA-256 is another than "
+                                   "in the provenance.toml of its profile)"
+                                 : "is missing"));
 }
 
 }  // namespace
+
+std::string key_of(const Case& the_case) { return the_case.group + "/" + the_case.name; }
+
+std::map<std::string, std::string> hashes_of(const Vehicle& vehicle) {
+  const auto files = vehicle.files();
+  return {{files[0].filename().string(), vehicle.sha256},
+          {files[1].filename().string(), vehicle.mjcf_sha256}};
+}
 
 fs::path golden_file(const fs::path& golden_root, const Case& the_case) {
   return golden_root / the_case.profile / the_case.group / (the_case.name + ".csv");
@@ -67,16 +77,14 @@ Result<const GoldenTrace*> Golden::trace(const RunConfiguration& configuration) 
 }
 
 Result<void> Golden::check_vehicle(const Vehicle& vehicle) const {
-  const std::array<const std::string*, 2> loaded{&vehicle.sha256, &vehicle.mjcf_sha256};
-  for (std::size_t i = 0; i < loaded.size(); ++i) {
-    const fs::path file = vehicle.files()[i];
-    const auto blessed = origin_.models.find(file.filename().string());
-    if (blessed != origin_.models.end() && blessed->second == *loaded[i]) continue;
+  for (const auto& [name, loaded] : hashes_of(vehicle)) {
+    const auto blessed = origin_.models.find(name);
+    if (blessed != origin_.models.end() && blessed->second == loaded) continue;
     const char* const why = blessed == origin_.models.end() ? "is new" : "has changed";
     return fail_at(file_.string(),
                    fmt::format("the golden is stale: {} {} since it was blessed; `attest bless` "
                                "makes it anew",
-                               file.string(), why));
+                               (vehicle.file.parent_path() / name).string(), why));
   }
   return {};
 }
@@ -105,6 +113,9 @@ Result<Golden> Goldens::open(const Case& the_case) const {
                    fmt::format("the golden is stale: {} has changed since it was blessed; {} anew",
                                the_case.file.string(), how_to_bless(the_case.id())));
   }
+  if (auto same = check_reference(origin->second, file); !same) {
+    return tl::unexpected(same.error());
+  }
   const auto text = blessed_text(file, origin->second);
   if (!text) return tl::unexpected(text.error());
   auto traces = parse_golden(*text, file, the_case.module);
@@ -118,10 +129,24 @@ const Result<GoldenOrigins>& Goldens::origins_of(const std::string& profile) con
   return origins_.emplace(profile, read_origins(profile)).first->second;
 }
 
+// The reports name the reference of the suite's file, so each golden must come from it.
+Result<void> Goldens::check_reference(const GoldenOrigin& origin, const fs::path& file) const {
+  std::istringstream text(read_file(root_ / reference_name).value_or(""));
+  std::string of_suite;
+  std::getline(text, of_suite);
+  if (origin.inputs.empty() ? of_suite.empty() : of_suite == origin.reference) return {};
+  const std::string owner = of_suite.empty() ? "attest's own law" : of_suite;
+  return fail_at(
+      file.string(),
+      fmt::format("was made by {}, but the reference of this suite is {} ({}); bless all "
+                  "goldens anew with one reference",
+                  origin.reference, owner, (root_ / reference_name).string()));
+}
+
 Result<GoldenOrigins> Goldens::read_origins(const std::string& profile) const {
   const fs::path file = origins_file(root_, profile);
   std::error_code ignored;
-  if (!fs::exists(file, ignored)) return GoldenOrigins{};
+  if (fs::symlink_status(file, ignored).type() == fs::file_type::not_found) return GoldenOrigins{};
   const auto text = read_file(file);
   if (!text) return tl::unexpected(text.error());
   if (suite_) {

@@ -18,6 +18,10 @@
 
 namespace attest {
 
+// The file in the folder of the goldens that names the port that made them all. Without it, they
+// are those of attest's own law.
+inline constexpr const char* reference_name = "REFERENCE";
+
 // The golden of one case, read and checked.
 class Golden {
  public:
@@ -53,8 +57,9 @@ class Goldens {
   explicit Goldens(std::filesystem::path root, std::shared_ptr<const FileHashes> suite = nullptr)
       : root_(std::move(root)), suite_(std::move(suite)) {}
 
-  // Errors: the golden is missing, was made from another version of the case, or was edited; the
-  // origins were edited, or have another hash in `suite`. The message names the remedy. The bytes
+  // Errors: the golden is missing, was made from another version of the case, or was edited; it was
+  // made by another reference than the suite says; the origins were edited, or have another hash in
+  // `suite`. The message names the remedy. The bytes
   // that are hashed are those that are parsed: a file that is replaced during the run is never
   // judged against.
   Result<Golden> open(const Case& the_case) const;
@@ -66,11 +71,18 @@ class Goldens {
 
  private:
   Result<GoldenOrigins> read_origins(const std::string& profile) const;
+  Result<void> check_reference(const GoldenOrigin& origin, const std::filesystem::path& file) const;
 
   std::filesystem::path root_;
   std::shared_ptr<const FileHashes> suite_;
   mutable std::map<std::string, Result<GoldenOrigins>> origins_;  // by profile
 };
+
+// The key of a case in GoldenOrigins.
+std::string key_of(const Case& the_case);
+
+// Name of each file from which the vehicle was loaded -> SHA-256 of the bytes that were loaded.
+std::map<std::string, std::string> hashes_of(const Vehicle& vehicle);
 
 std::filesystem::path golden_file(const std::filesystem::path& golden_root, const Case& the_case);
 

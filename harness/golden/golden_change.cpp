@@ -105,21 +105,13 @@ bool measures_the_same(const std::vector<GoldenTrace>& old_traces,
   });
 }
 
-bool has_other_vehicles(const GoldenOrigin& origin, const MadeGolden& made) {
-  std::map<std::string, std::string> models;
-  for (const auto& file : made.vehicle_files) {
-    models[file.filename().string()] = sha256_of_file(file).value_or("");
-  }
-  return models != origin.models;
-}
-
 }  // namespace
 
 Result<std::string> change_of_golden(const Case& the_case, const MadeGolden& made,
                                      const Goldens& goldens) {
   const auto& origins = goldens.origins_of(the_case.profile);
   if (!origins) return tl::unexpected(origins.error());
-  const auto origin = origins->find(the_case.group + "/" + the_case.name);
+  const auto origin = origins->find(key_of(the_case));
   if (origin == origins->end()) {
     return fmt::format("{}: new, {} traces", the_case.id(), made.traces.size());
   }
@@ -138,7 +130,7 @@ Result<std::string> change_of_golden(const Case& the_case, const MadeGolden& mad
   if (golden->origin().case_sha256 != the_case.sha256) {
     return no_value_changes("the case file did");
   }
-  if (has_other_vehicles(golden->origin(), made)) {
+  if (golden->origin().models != made.models) {
     return no_value_changes("the vehicle's files did");
   }
   if (!measures_the_same(golden->traces(), made.traces)) {

@@ -33,7 +33,7 @@ bool same_outputs(const GoldenTrace& a, const GoldenTrace& b) {
 }
 
 // Gives traces that are equal to an earlier one's to that one.
-std::vector<GoldenTrace> shared(std::vector<GoldenTrace> traces) {
+std::vector<GoldenTrace> with_shared_traces(std::vector<GoldenTrace> traces) {
   std::vector<GoldenTrace> distinct;
   for (GoldenTrace& trace : traces) {
     const auto equal = std::find_if(distinct.begin(), distinct.end(), [&](const GoldenTrace& one) {
@@ -84,7 +84,8 @@ void write_rows(const GoldenTrace& trace, CsvText& text) {
   }
 }
 
-// The begin of a row in memory. The horizon and the metrics follow it, as doubles.
+// The begin of a row in memory, at the address of the row, where CsvRows writes it. The horizon and
+// the metrics follow it, as doubles; their number depends on the file.
 struct RowBegin {
   Sample sample;
   std::string_view configurations;
@@ -125,7 +126,8 @@ Result<Layout> set_columns(CsvRows& rows, Module module) {
                                               in_backquotes(name), name_of(module)));
     }
   }
-  if (rows.header().front() != configurations_column || rows.header().size() < 3) {
+  if (rows.header().size() < 3 || rows.header()[0] != configurations_column ||
+      rows.header()[1] != tick_column) {
     return fail_at(rows.file(),
                    "is not a golden: its first columns must be `configurations` and "
                    "`tick`, and then outputs follow; bless it anew",
@@ -146,7 +148,7 @@ class Reader {
 
   Result<std::vector<GoldenTrace>> read() {
     while (true) {
-      begin().configurations = {};
+      fixed_part().configurations = {};
       const auto more = rows_.next(row_.data());
       if (!more) return tl::unexpected(more.error());
       if (!*more) break;
@@ -157,30 +159,30 @@ class Reader {
   }
 
  private:
-  RowBegin& begin() { return *reinterpret_cast<RowBegin*>(row_.data()); }
+  RowBegin& fixed_part() { return *reinterpret_cast<RowBegin*>(row_.data()); }
 
   Result<void> add_row() {
-    if (!begin().configurations.empty()) {
-      if (auto begun = begin_trace(); !begun) return begun;
+    if (!fixed_part().configurations.empty()) {
+      if (auto begun = start_trace(); !begun) return begun;
     } else if (traces_.empty()) {
       return rows_.fail_at_cell(0, "the first row names no configuration; bless it anew");
     }
     GoldenTrace& trace = traces_.back();
-    const std::uint64_t tick = begin().tick;
+    const std::uint64_t tick = fixed_part().tick;
     if (!trace.ticks.empty() && tick <= trace.ticks.back()) {
       return rows_.fail_at_cell(1, fmt::format("tick {} is not after the {} of the row above; "
                                                "bless it anew",
                                                tick, trace.ticks.back()));
     }
     trace.ticks.push_back(tick);
-    trace.outputs.samples.push_back(begin().sample);
+    trace.outputs.samples.push_back(fixed_part().sample);
     return {};
   }
 
-  Result<void> begin_trace() {
+  Result<void> start_trace() {
     GoldenTrace trace;
     trace.outputs.present = layout_.present;
-    std::istringstream names{std::string(begin().configurations)};
+    std::istringstream names{std::string(fixed_part().configurations)};
     for (std::string name; names >> name;) {
       if (!known_.insert(name).second) {
         return rows_.fail_at_cell(0, fmt::format("{} has two traces; bless it anew", name));
@@ -215,7 +217,7 @@ Result<void> write_golden(const std::filesystem::path& path, std::vector<GoldenT
   if (!file) return tl::unexpected(file.error());
   CsvText text(*file);
   write_header(traces.front(), text);
-  for (const GoldenTrace& trace : shared(std::move(traces))) write_rows(trace, text);
+  for (const GoldenTrace& trace : with_shared_traces(std::move(traces))) write_rows(trace, text);
   if (auto written = text.finish(); !written) return written;
   return file->commit();
 }

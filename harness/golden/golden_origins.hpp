@@ -21,6 +21,8 @@ struct GoldenOrigin {
   std::map<std::string, std::string> models = {};
   // Of a golden of a port, whose outputs attest cannot compute: rate -> SHA-256 of the inputs.
   std::map<std::string, std::string> inputs = {};
+
+  bool operator==(const GoldenOrigin&) const = default;
 };
 
 using GoldenOrigins = std::map<std::string, GoldenOrigin>;  // "group/name" -> origin

@@ -1,7 +1,6 @@
 #include "harness/golden/make_golden.hpp"
 
 #include <numeric>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -106,7 +105,6 @@ Result<MadeGolden> make_golden(const Case& the_case, Reference& reference,
     made.left_out = "flights are compared with attest's own law";
     return made;
   }
-  std::set<std::filesystem::path> files;
   for (const RunConfiguration& configuration : the_case.configurations()) {
     if (stop()) return fail("interrupted");
     if (!configuration.plant_configuration) {
@@ -119,9 +117,8 @@ Result<MadeGolden> make_golden(const Case& the_case, Reference& reference,
     if (!vehicle_model) return tl::unexpected(vehicle_model.error());
     auto added = add_flight(the_case, configuration, **vehicle_model, made);
     if (!added) return tl::unexpected(added.error());
-    for (auto& file : (*vehicle_model)->vehicle().files()) files.insert(std::move(file));
+    made.models.merge(hashes_of((*vehicle_model)->vehicle()));
   }
-  made.vehicle_files.assign(files.begin(), files.end());
   return made;
 }
 

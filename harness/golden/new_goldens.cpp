@@ -1,6 +1,5 @@
 #include "harness/golden/new_goldens.hpp"
 
-#include <algorithm>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -12,7 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// remove() keeps a folder that is not empty.
+// Removes a file of this bless, and the folders of group and profile that it made. remove() keeps a
+// folder that is not empty.
 void remove_with_empty_folders(const fs::path& file) {
   std::error_code ignored;
   fs::remove(file, ignored);
@@ -27,27 +27,30 @@ Result<void> move_to_place(const fs::path& golden) {
   return fail_at(golden.string(), fmt::format("cannot be replaced: {}", error.message()));
 }
 
-// The goldens that have a new file next to them.
-Result<std::vector<fs::path>> places_of_new_files(const fs::path& golden_root) {
+// The goldens of a profile that have a new file next to them.
+std::vector<fs::path> places_of_new_files(const fs::path& profile) {
   std::error_code error;
   std::vector<fs::path> places;
-  for (fs::recursive_directory_iterator it(golden_root, error), end; it != end && !error;
-       it.increment(error)) {
-    if (it->path().extension() != ".new") continue;
-    places.push_back(fs::path(it->path()).replace_extension());
+  for (const auto& group : fs::directory_iterator(profile, error)) {
+    if (!group.is_directory(error)) continue;
+    for (const auto& file : fs::directory_iterator(group.path(), error)) {
+      const fs::path place = fs::path(file.path()).replace_extension();
+      if (file.path().extension() == ".new" && place.extension() == ".csv") places.push_back(place);
+    }
   }
-  if (!error) return places;
-  return fail_at(golden_root.string(), fmt::format("cannot be read: {}", error.message()));
+  return places;
 }
 
-bool is_expected(const fs::path& golden, const fs::path& golden_root, const Goldens& goldens) {
-  const fs::path in_root = golden.lexically_relative(golden_root);
-  const auto& origins = goldens.origins_of(in_root.begin()->string());
-  if (!origins) return false;
-  const std::string key = golden.parent_path().filename().string() + "/" + golden.stem().string();
-  const auto origin = origins->find(key);
-  return origin != origins->end() &&
-         sha256_of_file(new_golden_file(golden)) == origin->second.sha256;
+Result<void> finish(const fs::path& golden, const GoldenOrigins& origins) {
+  const auto origin =
+      origins.find(golden.parent_path().filename().string() + "/" + golden.stem().string());
+  const fs::path pending = new_golden_file(golden);
+  if (origin != origins.end() && sha256_of_file(pending) == origin->second.sha256) {
+    return move_to_place(golden);
+  }
+  std::error_code ignored;
+  if (fs::is_regular_file(golden, ignored)) fs::remove(pending, ignored);
+  return {};
 }
 
 }  // namespace
@@ -55,7 +58,7 @@ bool is_expected(const fs::path& golden, const fs::path& golden_root, const Gold
 std::string Making::own_reference() { return fmt::format("attest {}", version); }
 
 NewGoldens::~NewGoldens() {
-  if (has_origins_) return;
+  if (origins_written_) return;
   for (const fs::path& file : files_) remove_with_empty_folders(new_golden_file(file));
 }
 
@@ -78,21 +81,25 @@ Result<void> NewGoldens::add(const Case& the_case, const MadeGolden& made, const
   if (!hash) return tl::unexpected(hash.error());
   GoldenOrigin origin{*hash, the_case.sha256, making.reference, compiler(), making.reason};
   origin.inputs = made.inputs;
-  for (const fs::path& model : made.vehicle_files) {
-    auto of_model = sha256_of_file(model);
-    if (!of_model) return tl::unexpected(of_model.error());
-    origin.models[model.filename().string()] = *std::move(of_model);
-  }
-  origins_[the_case.profile][the_case.group + "/" + the_case.name] = std::move(origin);
+  origin.models = made.models;
+  origins_[the_case.profile][key_of(the_case)] = std::move(origin);
   return {};
 }
 
 Result<void> NewGoldens::put_in_place() {
+  const Goldens now(goldens_.root());
+  for (const auto& [profile, origins] : origins_) {
+    const auto& current = now.origins_of(profile);
+    if (!current) return tl::unexpected(current.error());
+    if (*current == *goldens_.origins_of(profile)) continue;
+    return fail_at(origins_file(goldens_.root(), profile).string(),
+                   "was changed while the new goldens were made; bless again");
+  }
   for (const auto& [profile, origins] : origins_) {
     const auto written = write_file(origins_file(goldens_.root(), profile), to_text(origins),
                                     AtomicFile::Special::replaced);
     if (!written) return written;
-    has_origins_ = true;
+    origins_written_ = true;
   }
   for (const fs::path& file : files_) {
     if (auto moved = move_to_place(file); !moved) return moved;
@@ -101,16 +108,19 @@ Result<void> NewGoldens::put_in_place() {
 }
 
 Result<void> finish_killed_bless(const fs::path& golden_root) {
-  const auto places = places_of_new_files(golden_root);
-  if (!places) return tl::unexpected(places.error());
   const Goldens goldens(golden_root);
-  for (const fs::path& golden : *places) {
-    if (!is_expected(golden, golden_root, goldens)) {
-      remove_with_empty_folders(new_golden_file(golden));
-    } else if (auto moved = move_to_place(golden); !moved) {
-      return moved;
+  std::error_code error;
+  for (const auto& profile : fs::directory_iterator(golden_root, error)) {
+    if (!profile.is_directory(error) || profile.path().filename() == "recorded") continue;
+    const auto places = places_of_new_files(profile.path());
+    if (places.empty()) continue;
+    const auto& origins = goldens.origins_of(profile.path().filename().string());
+    if (!origins) return tl::unexpected(origins.error());
+    for (const fs::path& golden : places) {
+      if (auto finished = finish(golden, *origins); !finished) return finished;
     }
   }
+  if (error) return fail_at(golden_root.string(), "cannot be read: " + error.message());
   return {};
 }
 

@@ -14,8 +14,8 @@ namespace attest {
 // The content of a new golden: the outputs of the reference for a case.
 struct MadeGolden {
   std::vector<GoldenTrace> traces;  // one for each of the case's configurations, in that order
-  std::vector<std::filesystem::path> vehicle_files = {};  // on which its flights depend
-  std::map<std::string, std::string> inputs = {};         // GoldenOrigin::inputs
+  std::map<std::string, std::string> models = {};  // GoldenOrigin::models
+  std::map<std::string, std::string> inputs = {};  // GoldenOrigin::inputs
   std::string left_out = {};  // why there is no golden of this case; empty if there is one
 };
 
@@ -41,7 +41,8 @@ class NewGoldens {
 
   // Writes the origins of each profile, then moves the goldens to their places. Golden::open()
   // finds a complete golden at each moment, even if the process is killed: the old one until the
-  // origins are written, then the new one.
+  // origins are written, then the new one. Errors: a file cannot be written or moved; the origins
+  // have changed since they were read.
   Result<void> put_in_place();
 
   std::size_t size() const { return files_.size(); }
@@ -50,11 +51,13 @@ class NewGoldens {
   const Goldens& goldens_;
   std::map<std::string, GoldenOrigins> origins_;  // by profile, with the old ones
   std::vector<std::filesystem::path> files_;      // their places
-  bool has_origins_ = false;                      // written; the new files then stay
+  bool origins_written_ = false;                  // of a profile; the new files then stay
 };
 
-// Ends what a killed bless has begun: moves a new golden to its place if the origins have its hash,
-// otherwise removes it. Errors: a file cannot be moved or removed.
+// Ends what a killed bless has begun. Moves a new golden to its place if the origins have its hash.
+// Otherwise the old golden is in force, and the new one is removed; without an old one it stays,
+// and the next bless of its case replaces it. Errors: the origins cannot be read; a file cannot be
+// moved.
 Result<void> finish_killed_bless(const std::filesystem::path& golden_root);
 
 }  // namespace attest

@@ -214,7 +214,9 @@ tl::unexpected<Error> CsvRows::diagnose(char* row) const {
                          fmt::format("row has {} cells, the header has {}; remove the extra cells",
                                      cells.size(), want));
   }
+  const bool repeats = empty_repeats_ && line_.front() == ',';
   const auto is_bad = [&](std::size_t i) {
+    if (repeats && cells[i].empty()) return false;
     const char* const last = cells[i].data() + cells[i].size();
     return parse_cell(cells[i].data(), last, columns_[i], row) != last;
   };

@@ -213,6 +213,26 @@ Result<VectorResult> evaluate_with(const Course& course, const FlightPlan& plan,
   return result;
 }
 
+// Errors: the reference does not agree with the golden, so the golden is no judge of a port.
+Result<void> check_golden(const Course& course, const FlightPlan& plan,
+                          const ReferenceFlight& golden) {
+  InProcessHost builtin(open_builtin(), {}, course);
+  const auto checked = evaluate_with(course, plan, golden, builtin, {});
+  if (!checked) return tl::unexpected(checked.error());
+  if (checked->verdict == Verdict::pass) return {};
+  return fail_at(golden.rows.source,
+                 fmt::format("at {}, the reference of this attest does not agree with the golden: "
+                             "{}; bless it anew, or restore it from version control",
+                             plan.configuration.label(), checked->reason));
+}
+
+// Whether the flight fails by the golden alone: each output is the reference's, but the flight or
+// its metrics differ.
+bool fails_by_golden(const VectorResult& result) {
+  const bool differs = result.verdict == Verdict::fail || result.verdict == Verdict::non_finite;
+  return differs && (!result.first || result.first->stages == only(Stage::input));
+}
+
 // For a port with a fixed step (fixed_step.hpp): the case begins one period after zero, and a
 // flight of the reference in this shifted case takes the place of the golden. Errors: in the case
 // as it is, the reference does not agree with the golden.
@@ -220,14 +240,8 @@ Result<VectorResult> evaluate_from_one_period_on(const Course& course, FlightPla
                                                  const ReferenceFlight& golden, PortHost& host,
                                                  const std::filesystem::path& saved_traces) {
   const Case& the_case = *course.the_case;
-  InProcessHost builtin(open_builtin(), {}, course);
-  const auto checked = evaluate_with(course, plan, golden, builtin, {});
-  if (!checked) return tl::unexpected(checked.error());
-  if (checked->verdict != Verdict::pass) {
-    return fail_at(the_case.file.string(),
-                   fmt::format("at {}, the reference of this attest does not agree with the "
-                               "golden, which therefore cannot be shifted: {}",
-                               plan.configuration.label(), checked->reason));
+  if (auto checked = check_golden(course, plan, golden); !checked) {
+    return tl::unexpected(checked.error());
   }
   const Case begun = the_case.from_one_period_on();
   const auto reference =
@@ -241,13 +255,35 @@ Result<VectorResult> evaluate_from_one_period_on(const Course& course, FlightPla
 
 namespace {
 
-Result<ReferenceFlight> flight_of(const Golden& golden, const RunConfiguration& configuration,
-                                  const Vehicle& vehicle) {
+// The error of a golden of a flight; empty if it can judge one.
+std::string complaint_about(const GoldenTrace& golden, const Case& the_case) {
+  const ChannelSet needed =
+      channels_of(the_case.module, "out/") | ChannelSet().set(timestamp_channel);
+  if (const ChannelSet missing = needed & ~golden.outputs.present; missing.any()) {
+    return fmt::format("has no column {}", channels()[missing._Find_first()].name);
+  }
+  if (!golden.horizon_s || !std::isfinite(*golden.horizon_s) || *golden.horizon_s < 0) {
+    return "has no horizon_s that is a time";
+  }
+  for (const Metric& metric : the_case.flight->metrics) {
+    if (!golden.metrics.contains(metric.name)) return "has no metric/" + metric.name;
+  }
+  const auto& samples = golden.outputs.samples;
+  const bool increase = std::is_sorted(
+      samples.begin(), samples.end(),
+      [](const Sample& a, const Sample& b) { return a.in.timestamp <= b.in.timestamp; });
+  return increase ? "" : "has timestamps that do not increase";
+}
+
+Result<ReferenceFlight> flight_of(const Golden& golden, const Case& the_case,
+                                  const RunConfiguration& configuration, const Vehicle& vehicle) {
   if (auto same = golden.check_vehicle(vehicle); !same) return tl::unexpected(same.error());
   const auto trace = golden.trace(configuration);
   if (!trace) return tl::unexpected(trace.error());
-  if (!(*trace)->horizon_s || !(*trace)->outputs.present[timestamp_channel]) {
-    return fail_at(golden.file().string(), "has no column horizon_s or timestamp; bless it anew");
+  if (const std::string wrong = complaint_about(**trace, the_case); !wrong.empty()) {
+    return fail_at(golden.file().string(),
+                   fmt::format("at {}, {}; bless it anew, or restore it from version control",
+                               configuration.label(), wrong));
   }
   return ReferenceFlight{(*trace)->outputs, *(*trace)->horizon_s, (*trace)->metrics};
 }
@@ -257,12 +293,15 @@ Result<ReferenceFlight> flight_of(const Golden& golden, const RunConfiguration& 
 Result<VectorResult> evaluate_flight(const Case& the_case, const RunConfiguration& configuration,
                                      const VehicleModel& vehicle_model, const Golden& golden,
                                      PortHost& host, const std::filesystem::path& saved_traces) {
-  const auto reference = flight_of(golden, configuration, vehicle_model.vehicle());
+  const auto reference = flight_of(golden, the_case, configuration, vehicle_model.vehicle());
   if (!reference) return tl::unexpected(reference.error());
   const Course course{&the_case, &vehicle_model};
   const FlightPlan plan{configuration, flight_timing(the_case, configuration.rate)};
   if (!has_fixed_step(host.declarations(), the_case)) {
-    return evaluate_with(course, plan, *reference, host, saved_traces);
+    auto result = evaluate_with(course, plan, *reference, host, saved_traces);
+    if (!result || !fails_by_golden(*result)) return result;
+    const auto checked = check_golden(course, plan, *reference);
+    return checked ? std::move(result) : tl::unexpected(checked.error());
   }
   VectorResult result = result_for(the_case, configuration);
   if (has_other_steps(host.declarations(), the_case, configuration.rate.unit, plan.timing, result))

@@ -217,6 +217,28 @@ MC_ROLLRATE_P = -0.3' >>suite/cases/px4-v1.5.5/flight/tilt.toml
   [ ! -e suite/golden/px4-v1.5.5 ]
 }
 
+@test "a golden flight that the reference does not fly is an error, and no verdict on a port" {
+  flight_suite
+  "$ATTEST" --suite suite bless --yes --reason "a test"
+  golden=suite/golden/px4-v1.5.5/flight/tilt.csv
+  cp $golden good.csv
+  for edit in 's/^,3,[0-9]*,[^,]*,[^,]*,/&9/' '2s/,[^,]*$/,99/' '2s/,[^,]*$/,nan/'; do
+    sed "$edit" good.csv >$golden
+    accept_edit $golden
+    run "$ATTEST" --suite suite run
+    [ "$status" -eq 2 ]
+    has "the reference of this attest does not agree with the golden"
+    lacks "fail: "
+  done
+  # Columns without which nothing would be compared.
+  column=$(head -1 good.csv | tr , '\n' | grep -n '^horizon_s$' | cut -d: -f1)
+  cut -d, -f "1-$((column - 1)),$((column + 1))-" good.csv >$golden
+  accept_edit $golden
+  run "$ATTEST" --suite suite run
+  [ "$status" -eq 2 ]
+  has "has no horizon_s that is a time; bless it anew"
+}
+
 @test "the horizon is where float and double part" {
   flight_suite
   cat >>suite/cases/px4-v1.5.5/flight/tilt.toml <<'TIGHT'

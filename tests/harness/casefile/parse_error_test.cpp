@@ -239,5 +239,16 @@ TEST(CaseErrors, Tolerances) {
               HasSubstr("unknown key `roll`"));
 }
 
+// The name is a key in the provenance of the goldens, and part of the ids in reports.
+TEST(CaseErrors, ANameThatCannotBeShown) {
+  const CaseFiles files;
+  for (const char* name : {"two\nlines", "no utf-8 \xff"}) {
+    const auto parsed = parse_case(files.write("tests", name, CaseFiles::with("")));
+    ASSERT_FALSE(parsed) << name;
+    EXPECT_THAT(parsed.error().message,
+                testing::HasSubstr("only UTF-8 without control characters"));
+  }
+}
+
 }  // namespace
 }  // namespace attest

@@ -181,6 +181,56 @@ TEST_F(KilledBless, BeforeTheOriginsTheOldGoldenIsRead) {
   EXPECT_EQ(read_file(file()).value(), old_);
 }
 
+// What a person does with a provenance that has a merge conflict: restore it.
+TEST_F(KilledBless, WithoutReadableOriginsTheNewGoldenStays) {
+  const std::string good = *read_file(origins());
+  fs::remove(file());
+  std::ofstream(origins(), std::ios::app) << "<<<<<<< HEAD\n";
+  EXPECT_FALSE(finish_killed_bless(root()));
+  fs::remove(origins());
+  EXPECT_TRUE(finish_killed_bless(root()));
+  ASSERT_TRUE(write_file(origins(), good));
+  EXPECT_TRUE(open(changed_));
+}
+
+TEST_F(KilledBless, FilesOfOthersStay) {
+  fs::create_directories(root() / "recorded" / "mine");
+  for (const char* name : {"notes.new", "recorded/mine/trace.csv.new", "px4-v1.5.5/tests/a.new",
+                           "px4-v1.5.5/b.csv.new"}) {
+    ASSERT_TRUE(write_file(root() / name, "of a person"));
+    ASSERT_TRUE(finish_killed_bless(root()));
+    EXPECT_EQ(read_file(root() / name).value_or(""), "of a person") << name;
+  }
+}
+
+TEST_F(GoldenTest, OriginsThatChangedWhileBlessRanAreNotOverwritten) {
+  bless(root(), a_case());
+  const Goldens old(root());
+  NewGoldens goldens(old);
+  ASSERT_TRUE(goldens.add(a_case("[control_state]\nroll_rate = 0.5\n"), made_by_reference(a_case()),
+                          {"a test"}));
+  bless(root(), other_case());
+  const auto placed = goldens.put_in_place();
+  ASSERT_FALSE(placed);
+  EXPECT_THAT(placed.error().message, HasSubstr("was changed while the new goldens were made"));
+  EXPECT_TRUE(open(other_case()));
+}
+
+// A report names the reference of the suite, and must not name another one than that which judged.
+TEST_F(GoldenTest, OfAnotherReferenceThanTheSuitesIsAnError) {
+  bless(root(), a_case());
+  const fs::path reference = root() / reference_name;
+  ASSERT_TRUE(write_file(reference, "a port\n"));
+  EXPECT_THAT(error_of_open(a_case()), HasSubstr("but the reference of this suite is a port"));
+  MadeGolden made = made_by_reference(a_case());
+  made.inputs["100hz"] = "some";
+  fs::remove(reference);
+  bless(root(), a_case(), made);
+  EXPECT_THAT(error_of_open(a_case()), HasSubstr("the reference of this suite is attest's own"));
+  ASSERT_TRUE(write_file(reference, Making::own_reference() + "\n"));
+  EXPECT_TRUE(open(a_case()));
+}
+
 TEST_F(GoldenTest, AFolderThatCannotBeMadeIsAnError) {
   std::ofstream(root()) << "a file where the folder should be\n";
   const Goldens old(root());
@@ -194,6 +244,7 @@ TEST_F(GoldenTest, OfAPortItIsForTheInputsThatThePortHad) {
   const auto inputs = answers_of_reference(a_case());
   made.inputs["100hz"] = "another";
   bless(root(), a_case(), made);
+  ASSERT_TRUE(write_file(root() / reference_name, Making::own_reference() + "\n"));
   const auto golden = open(a_case());
   ASSERT_TRUE(golden);
   EXPECT_TRUE(golden->is_of_port());
@@ -216,7 +267,9 @@ class GoldenOfAFlight : public GoldenTest {
       made.traces[i].horizon_s = 0.1 * static_cast<double>(i + 1);
       made.traces[i].metrics = {{"settles", static_cast<double>(i)}};
     }
-    made.vehicle_files = vehicle_files;
+    for (const fs::path& file : vehicle_files) {
+      made.models[file.filename().string()] = hashes_of(vehicle_).at(file.filename().string());
+    }
     return made;
   }
   std::string error_of_vehicle() const {
@@ -257,8 +310,9 @@ TEST_F(GoldenOfAFlight, ReportsWhatBlessingWouldChange) {
   other = made;
   other.traces[1].horizon_s = 0.3;
   EXPECT_THAT(change(other), HasSubstr("horizons or metrics did"));
-  ASSERT_TRUE(write_file(vehicle_.file, "of another bee\n"));
-  EXPECT_THAT(change(made), HasSubstr("the vehicle's files did"));
+  other = made;
+  other.models["bee.toml"] = sha256("of another bee\n");
+  EXPECT_THAT(change(other), HasSubstr("the vehicle's files did"));
 }
 
 }  // namespace
