@@ -222,8 +222,9 @@ MC_ROLLRATE_P = -0.3' >>suite/cases/px4-v1.5.5/flight/tilt.toml
   "$ATTEST" --suite suite bless --yes --reason "a test"
   golden=suite/golden/px4-v1.5.5/flight/tilt.csv
   cp $golden good.csv
-  for edit in 's/^,3,[0-9]*,[^,]*,[^,]*,/&9/' '2s/,[^,]*$/,99/' '2s/,[^,]*$/,nan/'; do
-    sed "$edit" good.csv >$golden
+  # A wrong roll rate at tick 3, and two wrong metrics.
+  for edit in '$2 == 3 { $5 = 9 }' 'NR == 2 { $NF = 99 }' 'NR == 2 { $NF = "nan" }'; do
+    awk -F, -v OFS=, "$edit"' { print }' good.csv >$golden
     accept_edit $golden
     run "$ATTEST" --suite suite run
     [ "$status" -eq 2 ]
