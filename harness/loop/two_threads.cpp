@@ -36,7 +36,8 @@ struct Pause {
   std::atomic<std::size_t> others_steps{0};
   std::atomic<std::size_t> lasts_until{0};  // the other has made so many steps
   std::atomic<bool> others_end{false};
-  std::atomic<bool> is_due{false};  // the timer runs
+  std::atomic<bool> is_due{false};   // the timer runs
+  std::atomic<bool> is_sent{false};  // the other has sent the signal
   std::atomic<SteadyClock::duration> in_all{};
 };
 Pause the_pause;
@@ -53,11 +54,13 @@ extern "C" void pause_until_the_other_has_stepped(int) {
     ::nanosleep(&nap, nullptr);
   }
   the_pause.in_all = the_pause.in_all.load() + (SteadyClock::now() - begin);
-  the_pause.is_due = false;
+  the_pause.is_due = the_pause.is_sent = false;
   errno = saved;
 }
 
-// Pauses the thread that makes this object.
+// Pauses the thread that makes this object, after a time on its own CPU. The other thread also
+// sends the signal: timers of a virtual machine can be milliseconds late, and then there are too
+// few pauses. The other thread may rarely have a CPU, and then there are only those of the timer.
 class PauseTimer {
  public:
   PauseTimer() {
@@ -102,13 +105,15 @@ bool run_on_two_threads(const std::function<bool()>& judged, const std::function
   const std::size_t between_pauses = std::max<std::size_t>(steps / pauses, 1);
   std::atomic<std::size_t> judged_steps = 0;
   std::atomic<bool> judged_end = false;
+  std::atomic<pid_t> judged_thread = 0;
   the_pause.others_steps = the_pause.lasts_until = 0;
-  the_pause.others_end = the_pause.is_due = false;
+  the_pause.others_end = the_pause.is_due = the_pause.is_sent = false;
   the_pause.in_all = SteadyClock::duration(0);
   std::optional<std::thread> thread;
   try {
     thread.emplace([&] {
       PauseTimer timer;
+      judged_thread = ::gettid();
       while (judged()) {
         if (++judged_steps % between_pauses == 0) timer.pause_soon();
       }
@@ -117,7 +122,13 @@ bool run_on_two_threads(const std::function<bool()>& judged, const std::function
   } catch (const std::system_error&) {
     return false;
   }
+  std::size_t next_pause = between_pauses;
   while (!judged_end) {
+    const bool may_pause = judged_thread != 0 && the_pause.in_all.load() <= longest_in_all;
+    if (may_pause && judged_steps >= next_pause && !the_pause.is_sent.exchange(true)) {
+      next_pause = judged_steps + between_pauses;
+      ::tgkill(::getpid(), judged_thread, pausing_signal);
+    }
     if (the_pause.others_steps >= judged_steps + most_ahead &&
         the_pause.others_steps >= the_pause.lasts_until) {
       std::this_thread::yield();
