@@ -175,10 +175,10 @@ void parse_identity(const TomlTable& root, const fs::path& file, Case& parsed) {
   // Normalised, because otherwise the folder of "./roll.toml" would be named ".".
   const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
   parsed.name = file.stem().string();
-  if (printable(parsed.name) != parsed.name) {
+  if (printable_part(parsed.name) != parsed.name) {
     root.error("group", fmt::format("a case must not be named `{}`: only UTF-8 without control "
                                     "characters; rename the file",
-                                    printable(parsed.name)));
+                                    printable_part(parsed.name)));
   }
   parsed.profile = folder.parent_path().filename().string();
   parsed.profiles = parse_profiles(root, parsed.profile);

@@ -139,7 +139,7 @@ TEST_F(GoldenFile, WhatIsNoGoldenIsAnErrorWithItsPlace) {
   EXPECT_THAT(error(h + "50hz,0,1\n,1,x\n"), HasSubstr("golden.csv:3:4: `x` is not a number"));
   EXPECT_THAT(error("configurations,tick,out/vehicle_rates_setpoint.published,"
                     "out/vehicle_rates_setpoint.roll\n50hz,0,1,1\n,1,,1e999\n"),
-              HasSubstr("golden.csv:3:5: `1e999` is not a number"));
+              HasSubstr("golden.csv:3:5: `1e999` is too large"));
   EXPECT_THAT(error(h + "50hz,0,1\n,0,\n"), HasSubstr("golden.csv:3:2: tick 0 is not after"));
   EXPECT_THAT(error(h + "50hz,0,1\n50hz,0,1\n"), HasSubstr("golden.csv:3:1: 50hz has two traces"));
 }

@@ -40,7 +40,7 @@ TEST(FailureText, TellsWhatIsWrongWhereAndHowToRunItAgain) {
       "  look first at the attitude law: no output of an earlier stage deviates up to this tick\n"
       "  2 of 500 ticks deviate\n"
       "  case:      cases/px4-v1.5.5/attitude/roll_30.toml\n"
-      "  golden:    golden/px4-v1.5.5/attitude/roll_30/250hz.csv\n"
+      "  golden:    golden/px4-v1.5.5/attitude/roll_30.csv\n"
       "  reproduce: attest run --port lib:./mine.so --filter "
       "'px4-v1.5.5/attitude/roll_30@250hz'");
 }
