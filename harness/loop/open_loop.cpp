@@ -121,7 +121,8 @@ std::optional<PortFault> drive_alternately(Drive judged, Other& other) {
 }
 
 // The threads do not follow each other's steps, so the steps overlap in any way.
-std::optional<PortFault> drive_on_two_threads(Drive judged, Other& other, std::size_t ticks) {
+std::optional<PortFault> drive_on_two_threads(Drive judged, Other& other, std::size_t ticks,
+                                              std::size_t& overlaps) {
   std::optional<PortFault> fault, of_other;
   const auto judged_step = [&] {
     fault = judged.step();
@@ -131,8 +132,9 @@ std::optional<PortFault> drive_on_two_threads(Drive judged, Other& other, std::s
     of_other = other.step();
     return !of_other && !other.is_over();
   };
-  if (!run_on_two_threads(judged_step, other_step, ticks)) return drive_alternately(judged, other);
-  return fault ? fault : of_other;
+  if (run_on_two_threads(judged_step, other_step, ticks, overlaps)) return fault ? fault : of_other;
+  overlaps = enough_overlaps;  // there will be no more
+  return drive_alternately(judged, other);
 }
 
 PortFault makes_only_one() {
@@ -146,17 +148,17 @@ PortFault makes_no_other() {
       "create() returned NULL after the first instance was destroyed; create() is always legal"};
 }
 
-// `create` makes another instance of the subject; null if the port refuses.
-template <typename Create>
-std::optional<PortFault> drive_in_company(std::unique_ptr<Unit> first, Create create,
-                                          bool is_one_at_a_time, const Subject& subject,
-                                          Trace& trace) {
-  Other other(*first, subject, trace);
+// Two instances of the subject. `overlaps`: those on two threads are added.
+std::optional<PortFault> drive_in_company(Port& port, const Subject& subject, Trace& trace,
+                                          std::size_t& overlaps) {
+  auto first = make_unit(port, subject);
+  if (!first) return first.error();
+  Other other(**first, subject, trace);
   if (subject.instances == Instances::again) {
     if (auto fault = other.run()) return fault;
-    first.reset();
+    first->reset();
   }
-  const std::unique_ptr<Unit> judged = create();
+  const auto judged = port.create_unit(subject.module, subject.profile, subject.mixer);
   if (!judged) {
     return subject.instances == Instances::again ? makes_no_other() : makes_only_one();
   }
@@ -164,12 +166,12 @@ std::optional<PortFault> drive_in_company(std::unique_ptr<Unit> first, Create cr
   const Drive drive_judged(*judged, driver, trace);
   if (subject.instances == Instances::together) return drive_alternately(drive_judged, other);
   if (subject.instances == Instances::two_threads) {
-    return is_one_at_a_time ? drive_alternately(drive_judged, other)
-                            : drive_on_two_threads(drive_judged, other, trace.samples.size());
+    if (port.is_one_at_a_time()) return drive_alternately(drive_judged, other);
+    return drive_on_two_threads(drive_judged, other, trace.samples.size(), overlaps);
   }
   if (subject.instances == Instances::crossed) {
     if (auto fault = other.run()) return fault;
-    first.reset();
+    first->reset();
   }
   return drive(*judged, trace, subject.module);
 }
@@ -332,13 +334,16 @@ tl::expected<std::unique_ptr<Unit>, PortFault> make_unit(Port& port, const Subje
 
 std::optional<PortFault> drive(Port& port, const Subject& subject, Trace& trace) {
   if (are_many(subject.instances)) return drive_among_many(port, subject, trace);
-  auto unit = make_unit(port, subject);
-  if (!unit) return unit.error();
-  if (subject.instances == Instances::one) return drive(**unit, trace, subject.module);
-  const auto create = [&] {
-    return port.create_unit(subject.module, subject.profile, subject.mixer);
+  if (subject.instances == Instances::one) {
+    const auto unit = make_unit(port, subject);
+    return unit ? drive(**unit, trace, subject.module) : unit.error();
+  }
+  const auto run = [&](Trace& driven, std::size_t& overlaps) {
+    return drive_in_company(port, subject, driven, overlaps);
   };
-  return drive_in_company(*std::move(unit), create, port.is_one_at_a_time(), subject, trace);
+  std::size_t none = 0;
+  const bool overlap = subject.instances == Instances::two_threads && !port.is_one_at_a_time();
+  return overlap ? run_until_overlapped(trace, run) : run(trace, none);
 }
 
 }  // namespace attest

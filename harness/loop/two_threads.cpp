@@ -36,9 +36,10 @@ struct Pause {
   std::atomic<std::size_t> others_steps{0};
   std::atomic<std::size_t> lasts_until{0};  // the other has made so many steps
   std::atomic<bool> others_end{false};
-  std::atomic<bool> is_due{false};   // the timer runs
-  std::atomic<bool> is_sent{false};  // the other has sent the signal
+  std::atomic<bool> is_due{false};  // the timer runs
   std::atomic<SteadyClock::duration> in_all{};
+  std::atomic<bool> is_in_step{false};  // the paused thread
+  std::atomic<std::size_t> overlaps{0};
 };
 Pause the_pause;
 static_assert(std::atomic<SteadyClock::duration>::is_always_lock_free);
@@ -53,14 +54,13 @@ extern "C" void pause_until_the_other_has_stepped(int) {
          SteadyClock::now() < begin + longest_pause) {
     ::nanosleep(&nap, nullptr);
   }
+  if (the_pause.is_in_step && the_pause.others_steps >= end) ++the_pause.overlaps;
   the_pause.in_all = the_pause.in_all.load() + (SteadyClock::now() - begin);
-  the_pause.is_due = the_pause.is_sent = false;
+  the_pause.is_due = false;
   errno = saved;
 }
 
-// Pauses the thread that makes this object, after a time on its own CPU. The other thread also
-// sends the signal: timers of a virtual machine can be milliseconds late, and then there are too
-// few pauses. The other thread may rarely have a CPU, and then there are only those of the timer.
+// Pauses the thread that makes this object.
 class PauseTimer {
  public:
   PauseTimer() {
@@ -100,21 +100,26 @@ class PauseTimer {
 }  // namespace
 
 bool run_on_two_threads(const std::function<bool()>& judged, const std::function<bool()>& other,
-                        std::size_t steps) {
+                        std::size_t steps, std::size_t& overlaps) {
   constexpr std::size_t most_ahead = 16;
   const std::size_t between_pauses = std::max<std::size_t>(steps / pauses, 1);
   std::atomic<std::size_t> judged_steps = 0;
   std::atomic<bool> judged_end = false;
-  std::atomic<pid_t> judged_thread = 0;
   the_pause.others_steps = the_pause.lasts_until = 0;
-  the_pause.others_end = the_pause.is_due = the_pause.is_sent = false;
+  the_pause.others_end = the_pause.is_due = false;
   the_pause.in_all = SteadyClock::duration(0);
+  the_pause.overlaps = 0;
   std::optional<std::thread> thread;
   try {
     thread.emplace([&] {
       PauseTimer timer;
-      judged_thread = ::gettid();
-      while (judged()) {
+      const auto step = [&] {
+        the_pause.is_in_step = true;
+        const bool goes_on = judged();
+        the_pause.is_in_step = false;
+        return goes_on;
+      };
+      while (step()) {
         if (++judged_steps % between_pauses == 0) timer.pause_soon();
       }
       judged_end = true;
@@ -122,13 +127,7 @@ bool run_on_two_threads(const std::function<bool()>& judged, const std::function
   } catch (const std::system_error&) {
     return false;
   }
-  std::size_t next_pause = between_pauses;
   while (!judged_end) {
-    const bool may_pause = judged_thread != 0 && the_pause.in_all.load() <= longest_in_all;
-    if (may_pause && judged_steps >= next_pause && !the_pause.is_sent.exchange(true)) {
-      next_pause = judged_steps + between_pauses;
-      ::tgkill(::getpid(), judged_thread, pausing_signal);
-    }
     if (the_pause.others_steps >= judged_steps + most_ahead &&
         the_pause.others_steps >= the_pause.lasts_until) {
       std::this_thread::yield();
@@ -139,7 +138,40 @@ bool run_on_two_threads(const std::function<bool()>& judged, const std::function
   }
   the_pause.others_end = true;
   thread->join();
+  overlaps += the_pause.overlaps;
   return true;
+}
+
+namespace {
+
+std::optional<std::size_t> first_other_output(const Trace& a, const Trace& b) {
+  for (std::size_t tick = 0; tick < a.samples.size(); ++tick) {
+    if (!std::ranges::equal(a.samples[tick].outputs(), b.samples[tick].outputs())) return tick;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<PortFault> run_until_overlapped(
+    Trace& trace,
+    const std::function<std::optional<PortFault>(Trace& trace, std::size_t& overlaps)>& run) {
+  constexpr SteadyClock::duration longest = std::chrono::seconds(3);
+  const Trace inputs = trace;
+  const auto begin = SteadyClock::now();
+  std::size_t overlaps = 0;
+  if (auto fault = run(trace, overlaps)) return fault;
+  while (overlaps < enough_overlaps && SteadyClock::now() < begin + longest) {
+    Trace again = inputs;
+    if (auto fault = run(again, overlaps)) return fault;
+    const auto tick = first_other_output(trace, again);
+    if (!tick) continue;
+    return PortFault{
+        PortFault::Kind::failed, *tick,
+        "its outputs for the same inputs depend on the steps of an instance on another "
+        "thread: the two share data"};
+  }
+  return std::nullopt;
 }
 
 }  // namespace attest

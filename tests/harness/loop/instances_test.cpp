@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/loop/open_loop.hpp"
+#include "harness/loop/two_threads.hpp"
 #include "tests/harness/loop/numbered_trace.hpp"
 
 namespace attest {
@@ -181,6 +182,32 @@ std::ptrdiff_t wrong_ticks(Instances instances, bool one_at_a_time) {
 TEST(TwoThreads, ShowAVariableThatAStepShares) {
   EXPECT_EQ(wrong_ticks(Instances::together, false), 0);
   EXPECT_GT(wrong_ticks(Instances::two_threads, false), 0);
+}
+
+// `overlaps_of_run`: one for each run; the last value stays.
+std::optional<PortFault> repeated(std::vector<std::size_t> overlaps_of_run, std::size_t wrong_run,
+                                  std::size_t& runs) {
+  Trace trace = trace_of(3);
+  runs = 0;
+  return run_until_overlapped(
+      trace, [&](Trace& driven, std::size_t& overlaps) -> std::optional<PortFault> {
+        overlaps += overlaps_of_run[std::min(runs, overlaps_of_run.size() - 1)];
+        if (++runs == wrong_run) driven.samples[1].out.actuator_controls_0.control[0] = 1;
+        return std::nullopt;
+      });
+}
+
+TEST(TwoThreads, RunAgainUntilEnoughStepsOverlap) {
+  std::size_t runs = 0;
+  EXPECT_FALSE(repeated({enough_overlaps}, 0, runs));
+  EXPECT_EQ(runs, 1u);
+  EXPECT_FALSE(repeated({3, enough_overlaps - 5, 2}, 0, runs));
+  EXPECT_EQ(runs, 3u);
+  const auto fault = repeated({1}, 4, runs);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(runs, 4u);
+  EXPECT_EQ(fault->kind, PortFault::Kind::failed);
+  EXPECT_EQ(fault->tick, 1u);
 }
 
 TEST(TwoThreads, AlternateForAPortThatIsOneAtATime) {
