@@ -72,11 +72,11 @@ bool confirmed(const BlessOptions& options, std::size_t count) {
 // A suite has one reference: its goldens all come from attest's own reference, or from one port.
 Result<void> check_kind(const BlessOptions& options, const Globals& globals,
                         const SuiteFolder& suite) {
-  const std::string reference = suite.reference();
+  const std::string reference = Goldens(suite.golden()).reference();
   if (options.port.empty()) {
     if (reference.empty()) return {};
     return fail_at(
-        suite.reference_file().string(),
+        suite.golden().string(),
         fmt::format("the reference of this suite is {}; bless it with --port", reference));
   }
   if (globals.suite.empty()) {
@@ -131,15 +131,33 @@ Result<BlessingOptions> blessing_of(const BlessOptions& options,
   return blessing;
 }
 
-// `port`: description of the port that made the goldens; empty: attest's reference made them.
-Result<void> replace_goldens(NewGoldens& goldens, const std::string& port,
-                             const SuiteFolder& suite) {
-  if (!port.empty()) {
-    if (auto named = write_file(suite.reference_file(), port + "\n"); !named) return named;
+// Errors: cases that are not selected have goldens of another port.
+Result<void> check_other_goldens(const std::vector<SelectedCase>& selected,
+                                 const std::set<std::string>& all, const std::string& port,
+                                 const Goldens& goldens) {
+  std::set<std::string> others = all;
+  for (const SelectedCase& one : selected) others.erase(one.the_case.id());
+  for (const std::string& id : others) {
+    const std::size_t slash = id.find('/');
+    const auto& origins = goldens.origins_of(id.substr(0, slash));
+    if (!origins) return tl::unexpected(origins.error());
+    const auto origin = origins->find(id.substr(slash + 1));
+    if (origin == origins->end() || origin->second.reference == port) continue;
+    return fail_at(goldens.root().string(),
+                   fmt::format("the golden of {} is of {}, and a suite has one reference: bless "
+                               "all cases with this port",
+                               id, origin->second.reference));
   }
-  if (auto placed = goldens.put_in_place(); !placed) return placed;
-  fmt::print("blessed {}\n", goldens.size());
   return {};
+}
+
+// Errors: a malformed case file.
+Result<std::set<std::string>> ids_of_all_cases(const SuiteFolder& suite) {
+  const auto all = select_cases(suite.case_folders(), {});
+  if (!all) return tl::unexpected(all.error());
+  std::set<std::string> ids;
+  for (const SelectedCase& one : *all) ids.insert(one.the_case.id());
+  return ids;
 }
 
 Result<int> bless_selected(const BlessOptions& options, const Globals& globals) {
@@ -153,9 +171,17 @@ Result<int> bless_selected(const BlessOptions& options, const Globals& globals) 
   note_interrupts();
   const auto lock = GoldenLock::take(suite->golden());
   if (!lock) return tl::unexpected(lock.error());
-  const auto blessing = blessing_of(options, *cases, *suite);
+  auto blessing = blessing_of(options, *cases, *suite);
   if (!blessing) return tl::unexpected(blessing.error());
+  auto all = ids_of_all_cases(*suite);
+  if (!all) return tl::unexpected(all.error());
+  blessing->all_cases = *std::move(all);
   const Goldens goldens(suite->golden());
+  if (blessing->port) {
+    const std::string& port = blessing->making.reference;
+    auto same = check_other_goldens(*cases, blessing->all_cases, port, goldens);
+    if (!same) return tl::unexpected(same.error());
+  }
   auto pending = write_new_goldens(*cases, goldens, *blessing);
   if (auto go_on = check_not_interrupted(); !go_on) return tl::unexpected(go_on.error());
   if (!pending) return tl::unexpected(pending.error());
@@ -172,9 +198,9 @@ Result<int> bless_selected(const BlessOptions& options, const Globals& globals) 
     fmt::print("no golden was changed\n");
     return exit_failed;
   }
-  const std::string port = options.port.empty() ? "" : blessing->making.reference;
-  const auto replaced = replace_goldens(pending->goldens, port, *suite);
-  if (!replaced) return tl::unexpected(replaced.error());
+  const auto placed = pending->goldens.put_in_place();
+  if (!placed) return tl::unexpected(placed.error());
+  fmt::print("blessed {}\n", pending->goldens.size());
   return exit_ok;
 }
 

@@ -1,5 +1,6 @@
 #include <cfenv>
 #include <limits>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -55,17 +56,26 @@ void examine_cases(const SuiteFolder& suite, Examination& examination) {
   if (!cases) return examination.bad("cases", cases.error().to_string());
   std::size_t vectors = 0;
   std::vector<std::string> stale;
+  std::set<std::string> ids, profiles;
   const Goldens goldens(suite.golden());
   for (const auto& [the_case, configurations] : *cases) {
     vectors += configurations.size();
+    ids.insert(the_case.id());
+    profiles.insert(the_case.profile);
     if (const auto golden = goldens.open(the_case); !golden) {
       stale.push_back(golden.error().to_string());
     }
   }
   examination.good("cases", fmt::format("{} cases, {} vectors, in {}", cases->size(), vectors,
                                         suite.cases().string()));
+  for (const std::string& profile : profiles) {
+    for (const std::string& key : goldens.without_case(profile, ids)) {
+      stale.push_back(fmt::format("{}/{} has no case; `attest bless` removes it", profile, key));
+    }
+  }
   if (stale.empty()) return examination.good("golden", "one for each case, all current");
-  examination.bad("golden", fmt::format("{} missing or stale; first: {}", stale.size(), stale[0]));
+  examination.bad("golden", fmt::format("{} missing, stale or without a case; first: {}",
+                                        stale.size(), stale[0]));
 }
 
 // A group without a recording is not an error, but limits the weight of its verdicts.

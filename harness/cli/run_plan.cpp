@@ -228,11 +228,11 @@ Result<void> identify(const SuiteFolder& suite, RunPlan& plan) {
   RunResult& run = plan.run;
   run.cases_version = suite.version_of(suite.cases());
   run.golden_version = suite.version_of(suite.golden());
-  run.suite_reference = suite.reference();
   auto hash = suite.hash();
   if (!hash) return tl::unexpected(hash.error());
   run.suite_sha256 = hash->sha256;
   run.suite_is_released = run.suite_sha256 == released_suite_sha256();
+  if (!run.suite_is_released) run.suite_reference = Goldens(suite.golden()).reference();
   plan.suite = std::make_shared<const FileHashes>(std::move(hash->files));
   run.suite = vectors_by_group(suite, run.suite_sha256);
   return {};

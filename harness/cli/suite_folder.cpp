@@ -110,13 +110,6 @@ std::string SuiteFolder::version_of(const fs::path& folder) const {
   return text >> version ? version : "unversioned";
 }
 
-std::string SuiteFolder::reference() const {
-  std::istringstream text(read_file(reference_file()).value_or(""));
-  std::string line;
-  std::getline(text, line);
-  return line;
-}
-
 std::vector<std::string> SuiteFolder::groups() const {
   std::vector<std::string> names;
   for (const auto& group : vectors_by_group()) names.push_back(group.first);

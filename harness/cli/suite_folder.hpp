@@ -10,7 +10,6 @@
 #include "harness/casefile/parse.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/result.hpp"
-#include "harness/golden/golden.hpp"
 #include "harness/schedule/rate.hpp"
 
 namespace attest::cli {
@@ -45,11 +44,6 @@ struct SuiteFolder {
   // The first word of the file VERSION in `folder`, which is cases() or golden(); else
   // "unversioned".
   std::string version_of(const std::filesystem::path& folder) const;
-
-  // The description of the port whose outputs are the goldens, as `bless --port` wrote it to
-  // golden/REFERENCE. Empty: the goldens are those of attest's own reference.
-  std::string reference() const;
-  std::filesystem::path reference_file() const { return golden() / reference_name; }
 
   // The groups of all profiles, sorted: "px4-v1.5.5/tpa". Reads the case files. Empty when one of
   // them is malformed, which select_cases() reports.

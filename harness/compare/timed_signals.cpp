@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/trace/csv_layout.hpp"
 #include "harness/trace/csv_rows.hpp"
 #include "harness/trace/plant_columns.hpp"
 #include "harness/ulog/flight_log.hpp"
@@ -175,6 +176,7 @@ struct Row {
 Result<TimedSignals> signals_of_csv(const std::filesystem::path& path) {
   auto rows = CsvRows::open(path);
   if (!rows) return tl::unexpected(rows.error());
+  if (auto refused = refuse_golden(*rows); !refused) return tl::unexpected(refused.error());
   if (auto limited = rows->limit_size(); !limited) return tl::unexpected(limited.error());
   TimedSignals signals{path.string(), {}, {}};
   std::vector<CsvColumn> columns;

@@ -250,6 +250,14 @@ std::int64_t TomlTable::integer(std::string_view key) const {
 std::vector<double> TomlTable::numbers(std::string_view key) const {
   return impl_->list<double>(key);
 }
+std::map<std::string, std::string> TomlTable::text_table(std::string_view key) const {
+  std::map<std::string, std::string> texts;
+  if (!has(key)) return texts;
+  const TomlTable inner = table(key);
+  for (const std::string& name : inner.keys()) texts[name] = inner.text(name);
+  return texts;
+}
+
 std::vector<std::string> TomlTable::texts(std::string_view key) const {
   return impl_->list<std::string>(key);
 }

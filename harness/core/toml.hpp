@@ -14,6 +14,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -58,6 +59,8 @@ class TomlTable {
   double number(std::string_view key, double fallback) const;
   std::int64_t integer(std::string_view key, std::int64_t fallback) const;
   bool boolean(std::string_view key, bool fallback) const;
+  // The texts of the table `key`, by their keys. An absent table is empty.
+  std::map<std::string, std::string> text_table(std::string_view key) const;
 
   // Records an error at the key's place (at the table's when the key is absent). Counts as reading.
   void error(std::string_view key, const std::string& message) const;

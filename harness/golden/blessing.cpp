@@ -2,11 +2,29 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "harness/golden/golden_change.hpp"
 #include "harness/golden/make_golden.hpp"
 #include "harness/plant/vehicle_models.hpp"
 
 namespace attest {
+namespace {
+
+Result<void> remove_without_case(const std::vector<SelectedCase>& cases, const Goldens& goldens,
+                                 const BlessingOptions& options, PendingGoldens& pending) {
+  std::set<std::string> profiles;
+  for (const SelectedCase& selected : cases) profiles.insert(selected.the_case.profile);
+  for (const std::string& profile : profiles) {
+    for (const std::string& key : goldens.without_case(profile, options.all_cases)) {
+      options.on_change(fmt::format("{}/{}: removed, because its case is gone", profile, key));
+      if (auto removed = pending.goldens.remove(profile, key); !removed) return removed;
+    }
+  }
+  return {};
+}
+
+}  // namespace
 
 Result<PendingGoldens> write_new_goldens(const std::vector<SelectedCase>& cases,
                                          const Goldens& goldens, const BlessingOptions& options) {
@@ -32,6 +50,9 @@ Result<PendingGoldens> write_new_goldens(const std::vector<SelectedCase>& cases,
     options.on_change(*change);
     auto added = pending.goldens.add(the_case, *made, options.making);
     if (!added) return tl::unexpected(added.error());
+  }
+  if (auto removed = remove_without_case(cases, goldens, options, pending); !removed) {
+    return tl::unexpected(removed.error());
   }
   return pending;
 }

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,6 @@
 #include "harness/plant/vehicle.hpp"
 
 namespace attest {
-
-// The file in the folder of the goldens that names the port that made them all. Without it, they
-// are those of attest's own law.
-inline constexpr const char* reference_name = "REFERENCE";
 
 // The golden of one case, read and checked.
 class Golden {
@@ -57,9 +54,8 @@ class Goldens {
   explicit Goldens(std::filesystem::path root, std::shared_ptr<const FileHashes> suite = nullptr)
       : root_(std::move(root)), suite_(std::move(suite)) {}
 
-  // Errors: the golden is missing, was made from another version of the case, or was edited; it was
-  // made by another reference than the suite says; the origins were edited, or have another hash in
-  // `suite`. The message names the remedy. The bytes
+  // Errors: the golden is missing, was made from another version of the case, or was edited; the
+  // origins were edited, or have another hash in `suite`. The message names the remedy. The bytes
   // that are hashed are those that are parsed: a file that is replaced during the run is never
   // judged against.
   Result<Golden> open(const Case& the_case) const;
@@ -67,11 +63,19 @@ class Goldens {
   // Errors: those of the file with the origins. A profile without that file has none.
   const Result<GoldenOrigins>& origins_of(const std::string& profile) const;
 
+  // The description of the port that made the goldens; of all such ports, after `; `, if a killed
+  // bless has left several. Empty: they are those of attest's own reference. Reads the origins of
+  // all profiles; those that cannot be read are left out, because a run of their cases reports it.
+  std::string reference() const;
+
+  // The keys in the origins of a profile that have no case: `ids` are those of all cases.
+  std::vector<std::string> without_case(const std::string& profile,
+                                        const std::set<std::string>& ids) const;
+
   const std::filesystem::path& root() const { return root_; }
 
  private:
   Result<GoldenOrigins> read_origins(const std::string& profile) const;
-  Result<void> check_reference(const GoldenOrigin& origin, const std::filesystem::path& file) const;
 
   std::filesystem::path root_;
   std::shared_ptr<const FileHashes> suite_;

@@ -23,14 +23,6 @@ Result<void> check_seal(std::string_view text, const std::filesystem::path& file
                  "text); restore it from version control, or remove it and bless its goldens anew");
 }
 
-std::map<std::string, std::string> texts_in(const TomlTable& origin, std::string_view key) {
-  std::map<std::string, std::string> texts;
-  if (!origin.has(key)) return texts;
-  const TomlTable table = origin.table(key);
-  for (const std::string& name : table.keys()) texts[name] = table.text(name);
-  return texts;
-}
-
 }  // namespace
 
 std::filesystem::path origins_file(const std::filesystem::path& golden_root,
@@ -46,9 +38,9 @@ Result<GoldenOrigins> parse_origins(std::string_view text, const std::filesystem
   GoldenOrigins origins;
   for (const std::string& id : root.keys()) {
     const TomlTable table = root.table(id);
-    origins[id] = {table.text("sha256"),     table.text("case_sha256"), table.text("reference"),
-                   table.text("compiler"),   table.text("reason"),      texts_in(table, "models"),
-                   texts_in(table, "inputs")};
+    origins[id] = {table.text("sha256"),      table.text("case_sha256"), table.text("reference"),
+                   table.text("compiler"),    table.text("reason"),      table.text_table("models"),
+                   table.text_table("inputs")};
   }
   if (const auto done = toml->finish(); !done) return tl::unexpected(done.error());
   return origins;

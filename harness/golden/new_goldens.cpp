@@ -62,12 +62,26 @@ NewGoldens::~NewGoldens() {
   for (const fs::path& file : files_) remove_with_empty_folders(new_golden_file(file));
 }
 
+// The origins that will be written.
+Result<GoldenOrigins*> NewGoldens::origins_of(const std::string& profile) {
+  const auto known = origins_.find(profile);
+  if (known != origins_.end()) return &known->second;
+  const auto& old = goldens_.origins_of(profile);
+  if (!old) return tl::unexpected(old.error());
+  return &origins_.emplace(profile, *old).first->second;
+}
+
+Result<void> NewGoldens::remove(const std::string& profile, const std::string& key) {
+  const auto origins = origins_of(profile);
+  if (!origins) return tl::unexpected(origins.error());
+  (*origins)->erase(key);
+  removed_.push_back(goldens_.root() / profile / (key + ".csv"));
+  return {};
+}
+
 Result<void> NewGoldens::add(const Case& the_case, const MadeGolden& made, const Making& making) {
-  if (!origins_.contains(the_case.profile)) {
-    const auto& old = goldens_.origins_of(the_case.profile);
-    if (!old) return tl::unexpected(old.error());
-    origins_[the_case.profile] = *old;
-  }
+  const auto origins = origins_of(the_case.profile);
+  if (!origins) return tl::unexpected(origins.error());
   const fs::path file = golden_file(goldens_.root(), the_case);
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
@@ -82,7 +96,7 @@ Result<void> NewGoldens::add(const Case& the_case, const MadeGolden& made, const
   GoldenOrigin origin{*hash, the_case.sha256, making.reference, compiler(), making.reason};
   origin.inputs = made.inputs;
   origin.models = made.models;
-  origins_[the_case.profile][key_of(the_case)] = std::move(origin);
+  (**origins)[key_of(the_case)] = std::move(origin);
   return {};
 }
 
@@ -104,6 +118,7 @@ Result<void> NewGoldens::put_in_place() {
   for (const fs::path& file : files_) {
     if (auto moved = move_to_place(file); !moved) return moved;
   }
+  for (const fs::path& file : removed_) remove_with_empty_folders(file);
   return {};
 }
 

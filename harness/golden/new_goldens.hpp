@@ -39,19 +39,26 @@ class NewGoldens {
   // Errors: the origins of the old goldens were edited; a file cannot be read or written.
   Result<void> add(const Case& the_case, const MadeGolden& made, const Making& making);
 
+  // Removes a golden without a case, when the others are put in place. Errors: as for add().
+  Result<void> remove(const std::string& profile, const std::string& key);
+
   // Writes the origins of each profile, then moves the goldens to their places. Golden::open()
   // finds a complete golden at each moment, even if the process is killed: the old one until the
   // origins are written, then the new one. Errors: a file cannot be written or moved; the origins
   // have changed since they were read.
   Result<void> put_in_place();
 
-  std::size_t size() const { return files_.size(); }
+  // The number of goldens that change.
+  std::size_t size() const { return files_.size() + removed_.size(); }
 
  private:
+  Result<GoldenOrigins*> origins_of(const std::string& profile);
+
   const Goldens& goldens_;
   std::map<std::string, GoldenOrigins> origins_;  // by profile, with the old ones
-  std::vector<std::filesystem::path> files_;      // their places
-  bool origins_written_ = false;                  // of a profile; the new files then stay
+  std::vector<std::filesystem::path> files_;      // places of the new goldens
+  std::vector<std::filesystem::path> removed_;
+  bool origins_written_ = false;  // of a profile; the new files then stay
 };
 
 // Ends what a killed bless has begun. Moves a new golden to its place if the origins have its hash.

@@ -30,13 +30,16 @@ bool may_be_ignored(std::string_view name, const CsvRows& rows, const std::strin
 
 }  // namespace
 
+Result<void> refuse_golden(const CsvRows& rows) {
+  if (rows.header().front() != "configurations") return {};
+  return fail_at(rows.file(),
+                 "is a golden, which has no inputs, and no trace; `attest vectors DIR` writes the "
+                 "inputs, and `attest run` compares a port with the golden",
+                 1, 1);
+}
+
 Result<CsvLayout> layout_of(const CsvRows& rows, Module module, TraceNeed need) {
-  if (rows.header().front() == "configurations") {
-    return fail_at(rows.file(),
-                   "is a golden, which has no inputs, and no trace; `attest vectors DIR` writes "
-                   "the inputs, and `attest run` compares a port with the golden",
-                   1, 1);
-  }
+  if (auto refused = refuse_golden(rows); !refused) return tl::unexpected(refused.error());
   CsvLayout layout;
   for (std::size_t i = 0; i < rows.header().size(); ++i) {
     const std::string_view name = rows.header()[i];

@@ -21,7 +21,10 @@ struct CsvLayout {
   std::vector<std::string> ignored;  // names of columns
 };
 
-// Errors: an unknown column, or one of another module.
+// Errors: the file is a golden (golden/README.md).
+Result<void> refuse_golden(const CsvRows& rows);
+
+// Errors: a golden; an unknown column, or one of another module.
 Result<CsvLayout> layout_of(const CsvRows& rows, Module module, TraceNeed need);
 
 // Errors: a channel that is needed is not in `present`.

@@ -6,18 +6,6 @@
 #include "harness/core/toml.hpp"
 
 namespace attest {
-namespace {
-
-std::map<std::string, std::string> read_texts(const TomlTable& root, std::string_view key) {
-  std::map<std::string, std::string> texts;
-  if (!root.has(key)) return texts;
-  const TomlTable table = root.table(key);
-  for (const std::string& name : table.keys()) texts[name] = table.text(name);
-  return texts;
-}
-
-}  // namespace
-
 Result<Provenance> read_provenance(const std::filesystem::path& file) {
   const auto toml = TomlFile::read(file);
   if (!toml) return tl::unexpected(toml.error());
@@ -28,8 +16,8 @@ Result<Provenance> read_provenance(const std::filesystem::path& file) {
   provenance.compiler = root.text("compiler", "");
   provenance.reason = root.text("reason", "");
   if (root.has("covers")) provenance.covers = root.texts("covers");
-  provenance.mixers = read_texts(root, "mixers");
-  provenance.sha256 = read_texts(root, "sha256");
+  provenance.mixers = root.text_table("mixers");
+  provenance.sha256 = root.text_table("sha256");
   if (const auto done = toml->finish(); !done) return tl::unexpected(done.error());
   return provenance;
 }

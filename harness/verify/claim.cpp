@@ -163,15 +163,26 @@ void say_what_was_not_compared(const Groups& groups, std::vector<std::string>& m
     missing.push_back("no output compared of " + few_or_counted(names, "", "groups"));
 }
 
+// "sign-flip 1.0" of "sign-flip 1.0 (lib:./mine.so, SHA-256 ab12...)", for each port of the text.
+std::string without_files(std::string_view ports) {
+  constexpr std::string_view between = "; ";
+  std::string names;
+  while (true) {
+    const std::size_t end = ports.find(between);
+    const std::string_view port = ports.substr(0, end);
+    names += port.substr(0, port.find(" ("));
+    if (end == std::string_view::npos) return names;
+    names += between;
+    ports.remove_prefix(end + between.size());
+  }
+}
+
 std::vector<std::string> missing_of(const Groups& groups, const RunResult& run) {
   std::vector<std::string> missing;
   if (!run.suite_is_released) {
-    missing.push_back(
-        run.suite_reference.empty()
-            ? "custom suite"
-            : fmt::format("custom suite, reference {}",
-                          run.suite_reference.substr(
-                              0, run.suite_reference.find(" ("))));  // without its file
+    missing.push_back(run.suite_reference.empty()
+                          ? "custom suite"
+                          : "custom suite, reference " + without_files(run.suite_reference));
   }
   if (!run.limits.own_process) missing.emplace_back("port not isolated: --in-process");
   for (const ParameterChange& parameter : run.parameters) {

@@ -70,12 +70,13 @@ Result<ExpectedOutputs> expected_outputs_of_varied(const Case& the_case, const C
                                                    const std::vector<ParameterChange>& parameters) {
   const auto checked = expected_outputs(the_case, rate, golden);
   if (!checked || golden.is_of_port()) {
+    const char* const why = checked ? "the golden is of a port"
+                                    : "the reference of this attest does not agree with the golden";
     return fail_at(
         the_case.file.string(),
-        fmt::format("at {}, the reference of this attest does not agree with the "
-                    "golden, so the expected outputs at other times or with other "
-                    "parameters are not known{}{}",
-                    rate.label(), checked ? "" : ": ", checked ? "" : checked.error().to_string()));
+        fmt::format("at {}, {}, so the expected outputs at other times or with other "
+                    "parameters are not known{}",
+                    rate.label(), why, checked ? "" : ": " + checked.error().to_string()));
   }
   Trace inputs = stimulate(begun, rate);
   for (const ParameterChange& parameter : parameters) override_parameter(parameter, inputs);

@@ -146,6 +146,23 @@ provenance=suite/golden/px4-v1.5.5/provenance.toml
   [ "$status" -eq 0 ]
 }
 
+@test "a golden whose case is gone is named by doctor, and removed by bless" {
+  make_suite
+  cases=suite/cases/px4-v1.5.5/attitude
+  sed 's/= 30/= 40/' $cases/roll.toml >$cases/gone.toml
+  "$ATTEST" --suite suite bless --yes --reason "both" >/dev/null
+  rm $cases/gone.toml
+  run "$ATTEST" --suite suite doctor
+  has "px4-v1.5.5/attitude/gone has no case; \`attest bless\` removes it"
+  run "$ATTEST" --suite suite bless --yes --reason "one is gone"
+  [ "$status" -eq 0 ]
+  has "px4-v1.5.5/attitude/gone: removed, because its case is gone"
+  [ "$(ls suite/golden/px4-v1.5.5/attitude)" = roll.csv ]
+  ! grep -q gone $provenance
+  run "$ATTEST" --suite suite run --level exact
+  [ "$status" -eq 0 ]
+}
+
 @test "an edited provenance is not blessed over" {
   blessed_suite
   sed -i 's/a test/no test/' $provenance

@@ -16,8 +16,8 @@ ours() { "$ATTEST" --suite ours "$@"; }
   run ours bless --port "lib:$PORTS/port_sign_flip.so" --profile px4-v1.5.5 --yes --reason "our law"
   [ "$status" -eq 0 ]
   has "blessed 2"
-  grep -q "^sign-flip .*SHA-256 [0-9a-f]\{64\})" ours/golden/REFERENCE
-  grep -q "reference = 'sign-flip" ours/golden/px4-v1.5.5/provenance.toml
+  provenance=ours/golden/px4-v1.5.5/provenance.toml
+  grep -q "^reference = 'sign-flip .*SHA-256 [0-9a-f]\{64\})'" $provenance
   # The golden of a long case keeps every tick, because attest's own law cannot fill them in.
   grep -q "^,4999," ours/golden/px4-v1.5.5/rates/long_run.csv
 
@@ -33,12 +33,21 @@ ours() { "$ATTEST" --suite ours "$@"; }
   run ours run --port "lib:$PORTS/port_fixed_step.so" --profile px4-v1.5.5 --rate 250
   [ "$status" -eq 2 ]
   has "the expected outputs at other times or with other parameters are not known"
-  # Without its name the port must not become the reference unnoticed.
-  mv ours/golden/REFERENCE named
-  run ours run --port "lib:$PORTS/port_sign_flip.so" --profile px4-v1.5.5 --rate 250
+  # Another port cannot make a part of the goldens.
+  run ours bless --port "lib:$STARTER" --profile px4-v1.5.5 --filter '*/p_alone' --yes --reason p
   [ "$status" -eq 2 ]
-  has "but the reference of this suite is attest's own law"
-  mv named ours/golden/REFERENCE
+  has "the golden of px4-v1.5.5/rates/long_run is of sign-flip"
+  has "bless all cases with this port"
+  # With its case, a golden goes, too.
+  rm ours/cases/px4-v1.5.5/rates/long_run.toml
+  run ours bless --port "lib:$STARTER" --profile px4-v1.5.5 --yes --reason "the other law"
+  [ "$status" -eq 0 ]
+  has "px4-v1.5.5/rates/long_run: removed, because its case is gone"
+  [ ! -e ours/golden/px4-v1.5.5/rates/long_run.csv ]
+  lacks "sign-flip"
+  run ours run --port "lib:$STARTER" --profile px4-v1.5.5 --level exact
+  [ "$status" -eq 0 ]
+  has "reference attest-starter-c"
 }
 
 @test "a suite whose reference is a port has no outputs for other parameters" {
@@ -156,7 +165,7 @@ P
     --profile px4-v1.5.5 --yes --reason "our law"
   [ "$status" -eq 2 ]
   has "a reference must be repeatable"
-  [ ! -e ours/golden/REFERENCE ]
+  [ ! -e ours/golden/px4-v1.5.5 ]
   mkdir -p ours/cases/px4-v1.5.5/flight ours/cases/px4-v1.5.5/mixer
   cp "$SOURCE/cases/px4-v1.5.5/flight/hover.toml" ours/cases/px4-v1.5.5/flight
   cp "$SOURCE/cases/px4-v1.5.5/mixer/linear_quad_x.toml" ours/cases/px4-v1.5.5/mixer

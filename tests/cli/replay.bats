@@ -86,6 +86,9 @@ recorded() { ls "$SOURCE"/golden/recorded/*/*.csv | grep -v tailsitter; }
   run "$ATTEST" replay "$SOURCE"/golden/px4-v1.3.4/attitude/yaw_error.csv
   [ "$status" -eq 2 ]
   has "yaw_error.csv:1:1: is a golden, which has no inputs, and no trace; \`attest vectors DIR\`"
+  run "$ATTEST" plot "$SOURCE"/golden/px4-v1.3.4/attitude/yaw_error.csv --list
+  [ "$status" -eq 2 ]
+  has "yaw_error.csv:1:1: is a golden"
 }
 
 @test "a mixer trace is replayed on the mixer that its provenance names" {

@@ -216,18 +216,28 @@ TEST_F(GoldenTest, OriginsThatChangedWhileBlessRanAreNotOverwritten) {
   EXPECT_TRUE(open(other_case()));
 }
 
-// A report names the reference of the suite, and must not name another one than that which judged.
-TEST_F(GoldenTest, OfAnotherReferenceThanTheSuitesIsAnError) {
+// A report names the reference, so it must be that which made the goldens.
+TEST_F(GoldenTest, TheReferenceIsThePortThatMadeThem) {
   bless(root(), a_case());
-  const fs::path reference = root() / reference_name;
-  ASSERT_TRUE(write_file(reference, "a port\n"));
-  EXPECT_THAT(error_of_open(a_case()), HasSubstr("but the reference of this suite is a port"));
-  MadeGolden made = made_by_reference(a_case());
+  EXPECT_EQ(Goldens(root()).reference(), "");
+  MadeGolden made = made_by_reference(other_case());
   made.inputs["100hz"] = "some";
-  fs::remove(reference);
-  bless(root(), a_case(), made);
-  EXPECT_THAT(error_of_open(a_case()), HasSubstr("the reference of this suite is attest's own"));
-  ASSERT_TRUE(write_file(reference, Making::own_reference() + "\n"));
+  bless(root(), other_case(), made);
+  EXPECT_EQ(Goldens(root()).reference(), Making::own_reference());
+}
+
+TEST_F(GoldenTest, WithoutACaseItIsRemovedWithItsEntry) {
+  bless(root(), a_case());
+  bless(root(), other_case());
+  const Goldens old(root());
+  EXPECT_THAT(old.without_case("px4-v1.5.5", {a_case().id()}),
+              testing::ElementsAre("tests/other_case"));
+  NewGoldens goldens(old);
+  ASSERT_TRUE(goldens.remove("px4-v1.5.5", "tests/other_case"));
+  EXPECT_TRUE(open(other_case())) << "it stays until the others are put in place";
+  ASSERT_TRUE(goldens.put_in_place());
+  EXPECT_THAT(files(), UnorderedElementsAre(of_the_case, of_the_profile));
+  EXPECT_FALSE(open(other_case()));
   EXPECT_TRUE(open(a_case()));
 }
 
@@ -244,7 +254,6 @@ TEST_F(GoldenTest, OfAPortItIsForTheInputsThatThePortHad) {
   const auto inputs = answers_of_reference(a_case());
   made.inputs["100hz"] = "another";
   bless(root(), a_case(), made);
-  ASSERT_TRUE(write_file(root() / reference_name, Making::own_reference() + "\n"));
   const auto golden = open(a_case());
   ASSERT_TRUE(golden);
   EXPECT_TRUE(golden->is_of_port());
