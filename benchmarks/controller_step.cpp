@@ -6,9 +6,9 @@
 
 #include "benchmarks/host_functions.hpp"
 #include "controller/attest_unit.h"
-#include "controller/reference/mc_att_control_definition.hpp"
-#include "controller/reference/unit.hpp"
-#include "controller/reference/unit_table.hpp"
+#include "controller/mc_att_control/mc_att_control_definition.hpp"
+#include "controller/mc_att_control/unit.hpp"
+#include "controller/mc_att_control/unit_table.hpp"
 #include "harness/trace/csv.hpp"
 
 extern "C" const attest_unit* attest_floor_unit(void);
@@ -38,11 +38,11 @@ void step(benchmark::State& state, const attest_unit* unit) {
   unit->destroy(self);
 }
 
-void reference_step(benchmark::State& state) { step(state, reference::reference_unit()); }
+void reference_step(benchmark::State& state) { step(state, mc_att_control::mc_att_control_unit()); }
 void by_hand_step(benchmark::State& state) { step(state, attest_floor_unit()); }
 void host_functions_step(benchmark::State& state) {
-  using Controller = reference::McAttControl<HostFloat>;
-  static constexpr attest_unit unit = reference::UnitTable<Controller>::named("host", "1");
+  using Controller = mc_att_control::McAttControl<HostFloat>;
+  static constexpr attest_unit unit = mc_att_control::UnitTable<Controller>::named("host", "1");
   step(state, &unit);
 }
 

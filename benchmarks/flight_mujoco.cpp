@@ -88,7 +88,7 @@ class BareSteps {
     const Flying& f = flying(rate);
     if (!flown.contains(rate)) flown[rate] = commands(f);  // installs MuJoCo's callbacks too
     commands_ = flown[rate];
-    per_tick_ = static_cast<int>(physics_of(f.the_case, rate.unit).hertz() / rate.hertz());
+    per_tick_ = static_cast<int>(physics_of(f.the_case, rate.motor_unit).hertz() / rate.hertz());
   }
   ~BareSteps() {
     mj_deleteData(data_);

@@ -7,8 +7,8 @@
 #include <benchmark/benchmark.h>
 #include <nvector/nvector_serial.h>
 
+#include "harness/core/random.hpp"
 #include "harness/plant/ode_plant.hpp"
-#include "harness/schedule/random.hpp"
 
 namespace attest::bench {
 namespace {

@@ -14,7 +14,7 @@
 #include "controller/cascade/gains.hpp"
 #include "controller/cascade/rotation.hpp"
 #include "controller/elementary/elementary.hpp"
-#include "controller/reference/inline.hpp"
+#include "controller/mc_att_control/inline.hpp"
 
 namespace attest::cascade {
 

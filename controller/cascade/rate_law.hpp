@@ -15,7 +15,7 @@
 #include "controller/attest_cascade.h"
 #include "controller/cascade/gains.hpp"
 #include "controller/cascade/rotation.hpp"
-#include "controller/reference/inline.hpp"
+#include "controller/mc_att_control/inline.hpp"
 
 namespace attest::cascade {
 

@@ -14,14 +14,14 @@
 #include "controller/cascade/profile.hpp"
 #include "controller/cascade/scalar_math.hpp"
 #include "controller/elementary/elementary.hpp"
-#include "controller/reference/inline.hpp"
-#include "controller/reference/ordered.hpp"
+#include "controller/mc_att_control/inline.hpp"
+#include "controller/mc_att_control/ordered.hpp"
 
 namespace attest::cascade {
 
-using reference::Vector3;
-using reference::ordered::dot;
-using reference::ordered::length;
+using mc_att_control::Vector3;
+using mc_att_control::ordered::dot;
+using mc_att_control::ordered::length;
 
 // A vector of four, so that the law's sums can be written by index. Unaligned, so that structs that
 // contain one need no aligned allocation.

@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "controller/cascade/profile.hpp"
-#include "controller/reference/inline.hpp"
+#include "controller/mc_att_control/inline.hpp"
 
 namespace attest::cascade {
 

@@ -8,7 +8,7 @@
 
 #include "controller/cascade/gains.hpp"
 #include "controller/cascade/rotation.hpp"
-#include "controller/reference/inline.hpp"
+#include "controller/mc_att_control/inline.hpp"
 
 namespace attest::cascade {
 

@@ -1,7 +1,7 @@
 #include "controller/cascade/whole.hpp"
 
 #include "controller/cascade/unit.hpp"
-#include "controller/reference/unit.hpp"
+#include "controller/mc_att_control/unit.hpp"
 
 namespace attest::cascade {
 namespace {
@@ -22,10 +22,12 @@ const attest_unit* whole() {
 
 }  // namespace
 
-const attest_unit* whole_reference() { return whole<reference::reference_unit, cascade_unit>(); }
+const attest_unit* whole_reference() {
+  return whole<mc_att_control::mc_att_control_unit, cascade_unit>();
+}
 
 const attest_unit* whole_reference_in_double() {
-  return whole<reference::reference_unit_in_double, cascade_unit_in_double>();
+  return whole<mc_att_control::mc_att_control_unit_in_double, cascade_unit_in_double>();
 }
 
 }  // namespace attest::cascade

@@ -51,7 +51,7 @@ const Fault battery[] = {
        change_factor(law, [](float scale, bool) { return scale > 0 ? scale : 1.0f; });
      },
      {},
-     reference::all_profiles},
+     mc_att_control::all_profiles},
     {"battery-unguarded", "battery", Stage::scaling, "scales by zero and by negative factors",
      "a scale of 0", "a condition dropped",
      [](FaultyLaw& law) {
@@ -102,11 +102,11 @@ const Fault battery[] = {
      [](FaultyLaw& law) {
        scale_otherwise(law, [](Controls& control, float factor) {
          for (int i = 0; i < 4; ++i)
-           control[i] = reference::clamp(control[i] * factor, -1.0f, 1.0f);
+           control[i] = mc_att_control::clamp(control[i] * factor, -1.0f, 1.0f);
        });
      },
      {},
-     reference::all_profiles},
+     mc_att_control::all_profiles},
     {"battery-before-guard", "battery", Stage::scaling, "scales before the check for finite values",
      "an infinite scale", "order of stages",
      [](FaultyLaw& law) {
@@ -155,7 +155,7 @@ const Fault actuators[] = {
        change_controls(law, [](Controls& control, const attest_inputs&) { control[7] = 0; });
      },
      {},
-     reference::from_v1_5_5},
+     mc_att_control::from_v1_5_5},
     {"gear-on-4",
      "actuators",
      Stage::output,
@@ -167,7 +167,7 @@ const Fault actuators[] = {
            law, [](Controls& control, const attest_inputs&) { std::swap(control[4], control[7]); });
      },
      {},
-     reference::from_v1_5_5},
+     mc_att_control::from_v1_5_5},
     {"gear-at-once", "actuators", Stage::output, "updates the landing gear in every mode",
      "a setpoint in acro", "a latch",
      [](FaultyLaw& law) {
@@ -183,11 +183,11 @@ const Fault actuators[] = {
      "misplaced clamp",
      [](FaultyLaw& law) {
        change_controls(law, [](Controls& control, const attest_inputs&) {
-         control[7] = reference::clamp(control[7], 0.0f, 1.0f);
+         control[7] = mc_att_control::clamp(control[7], 0.0f, 1.0f);
        });
      },
      {},
-     reference::from_v1_5_5},
+     mc_att_control::from_v1_5_5},
     {"breaker-ignored", "actuators", Stage::output, "has no circuit breaker", "CBRK_RATE_CTRL",
      "a missing step",
      [](FaultyLaw& law) {
@@ -229,7 +229,7 @@ const Fault actuators[] = {
      "misplaced clamp",
      [](FaultyLaw& law) {
        change_controls(law, [](Controls& control, const attest_inputs&) {
-         control[3] = reference::clamp(control[3], 0.0f, 1.0f);
+         control[3] = mc_att_control::clamp(control[3], 0.0f, 1.0f);
        });
      }},
     {"controls-not-cleared", "actuators", Stage::output,

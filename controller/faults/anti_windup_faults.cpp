@@ -9,8 +9,8 @@
 namespace attest::faults {
 namespace {
 
-using reference::integral_limit;
-using reference::takeoff_thrust;
+using mc_att_control::integral_limit;
+using mc_att_control::takeoff_thrust;
 
 // One axis of the integrator, with each gate of the law as a separate function.
 struct Gates {
@@ -90,7 +90,7 @@ const Fault anti_windup_list[] = {
      "a condition dropped",
      [](FaultyLaw& law) { use_gates(law, {.obeys_yaw_flag = false}); },
      {},
-     reference::from_v1_5_5},
+     mc_att_control::from_v1_5_5},
     {"gate-yaw-for-all", "anti_windup", Stage::gate, "freezes all axes at the yaw limit",
      "the yaw limit", "wrong axis",
      [](FaultyLaw& law) {

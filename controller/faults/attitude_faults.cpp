@@ -9,7 +9,7 @@
 namespace attest::faults {
 namespace {
 
-namespace ordered = reference::ordered;
+namespace ordered = mc_att_control::ordered;
 
 using Q = float[4];
 

@@ -49,7 +49,7 @@ std::string_view name_of(Stage stage) {
 
 bool ProfileSet::contains(std::string_view profile) const {
   if (controller_) {
-    const auto known = reference::profile_from_name(profile);
+    const auto known = mc_att_control::profile_from_name(profile);
     return known && controller_->contains(*known);
   }
   const auto known = cascade::profile_from_name(profile);
@@ -57,7 +57,7 @@ bool ProfileSet::contains(std::string_view profile) const {
 }
 
 bool ProfileSet::is_of_law_of(std::string_view profile) const {
-  return controller_ ? reference::profile_from_name(profile).has_value()
+  return controller_ ? mc_att_control::profile_from_name(profile).has_value()
                      : cascade::profile_from_name(profile).has_value();
 }
 
@@ -66,10 +66,10 @@ namespace {
 // Faults of one subject, and the profiles whose law has that subject.
 struct Subject {
   std::span<const Fault> faults;
-  ProfileSet profiles = reference::all_profiles;
+  ProfileSet profiles = mc_att_control::all_profiles;
 };
 
-constexpr auto from_v1_5_5 = reference::from_v1_5_5;
+constexpr auto from_v1_5_5 = mc_att_control::from_v1_5_5;
 constexpr auto cascades = cascade::all_profiles;
 constexpr auto from_v1_16_0 = cascade::from_v1_16_0;
 

@@ -11,11 +11,11 @@
 #include <string_view>
 
 #include "controller/cascade/profile.hpp"
-#include "controller/reference/profile.hpp"
+#include "controller/mc_att_control/profile.hpp"
 
 namespace attest::faults {
 
-using reference::Profile;
+using mc_att_control::Profile;
 struct FaultyLaw;
 
 // The part of the law that contains the mistake.
@@ -61,7 +61,7 @@ std::string_view name_of(Stage stage);  // "integrator gate"
 // Profiles of one law: of the controller, or of the cascade.
 class ProfileSet {
  public:
-  constexpr ProfileSet(reference::ProfileRange profiles) : controller_(profiles) {}
+  constexpr ProfileSet(mc_att_control::ProfileRange profiles) : controller_(profiles) {}
   constexpr ProfileSet(cascade::ProfileRange profiles) : cascade_(profiles) {}
 
   // Returns false if no profile has that name.
@@ -70,7 +70,7 @@ class ProfileSet {
   bool is_of_law_of(std::string_view profile) const;
 
  private:
-  std::optional<reference::ProfileRange> controller_;
+  std::optional<mc_att_control::ProfileRange> controller_;
   std::optional<cascade::ProfileRange> cascade_;
 };
 

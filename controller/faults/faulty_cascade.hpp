@@ -10,7 +10,7 @@
 namespace attest::faults {
 
 using Scalar = float;
-using Vector = reference::Vector3<Scalar>;
+using Vector = mc_att_control::Vector3<Scalar>;
 using Quat = cascade::Quaternion<Scalar>;
 using CascadeTraits = cascade::ProfileTraits;
 using CascadeParameters = cascade::Parameters;

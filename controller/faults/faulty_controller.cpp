@@ -4,7 +4,7 @@
 
 #include "controller/cascade/attitude_unit_definition.hpp"
 #include "controller/cascade/rate_unit_definition.hpp"
-#include "controller/reference/mc_att_control_definition.hpp"
+#include "controller/mc_att_control/mc_att_control_definition.hpp"
 
 namespace attest::faults {
 
@@ -15,7 +15,7 @@ FaultyLaw law_with(std::span<const Fault* const> faults) {
 }
 
 struct FaultyController::Controller {
-  reference::McAttControl<Scalar, FaultyLaw> control;
+  mc_att_control::McAttControl<Scalar, FaultyLaw> control;
 };
 
 // The law is copied into the controller. State that its functions share with `before` and `after`
@@ -23,7 +23,7 @@ struct FaultyController::Controller {
 FaultyController::FaultyController(Profile profile, std::span<const Fault* const> faults)
     : law_(law_with(faults)),
       controller_(std::make_unique<Controller>(
-          Controller{reference::McAttControl<Scalar, FaultyLaw>(profile, law_)})) {}
+          Controller{mc_att_control::McAttControl<Scalar, FaultyLaw>(profile, law_)})) {}
 
 FaultyController::~FaultyController() = default;
 

@@ -14,28 +14,28 @@
 #include "controller/actuation/mixer.hpp"
 #include "controller/faults/fault.hpp"
 #include "controller/faults/faulty_cascade.hpp"
-#include "controller/reference/mc_att_control.hpp"
+#include "controller/mc_att_control/mc_att_control.hpp"
 
 namespace attest::faults {
 
-using Matrix = reference::Matrix3<Scalar>;
-using Quaternion = reference::Quaternion<Scalar>;
-using Tilt = reference::TiltError<Scalar>;
-using AttitudeGains = reference::AttitudeGains<Scalar>;
-using RateGains = reference::RateGains<Scalar>;
-using Gains = reference::Gains<Scalar>;
-using RateCommand = reference::RateCommand<Scalar>;
-using RecoveryTilt = reference::RecoveryTilt<Scalar>;
-using reference::MotorLimits;
-using reference::Parameters;
-using reference::Topics;
+using Matrix = mc_att_control::Matrix3<Scalar>;
+using Quaternion = mc_att_control::Quaternion<Scalar>;
+using Tilt = mc_att_control::TiltError<Scalar>;
+using AttitudeGains = mc_att_control::AttitudeGains<Scalar>;
+using RateGains = mc_att_control::RateGains<Scalar>;
+using Gains = mc_att_control::Gains<Scalar>;
+using RateCommand = mc_att_control::RateCommand<Scalar>;
+using RecoveryTilt = mc_att_control::RecoveryTilt<Scalar>;
+using mc_att_control::MotorLimits;
+using mc_att_control::Parameters;
+using mc_att_control::Topics;
 
 inline constexpr Scalar pi = std::numbers::pi_v<Scalar>;
 
 // Each struct of stages has the functions of the law's struct `Law`, with the same names. This
-// struct has those of reference::AttitudeStages.
+// struct has those of mc_att_control::AttitudeStages.
 struct AttitudeStages {
-  using Law = reference::AttitudeStages<Scalar>;
+  using Law = mc_att_control::AttitudeStages<Scalar>;
   std::function<Tilt(const Matrix&, const Matrix&)> tilt_error = Law::tilt_error;
   std::function<Vector(const Matrix&, const Tilt&)> nose_after_tilt = Law::nose_after_tilt;
   std::function<Scalar(const Matrix&)> yaw_weight = Law::yaw_weight;
@@ -51,7 +51,7 @@ struct AttitudeStages {
 };
 
 struct RateStages {
-  using Law = reference::RateStages<Scalar>;
+  using Law = mc_att_control::RateStages<Scalar>;
   std::function<Scalar(Scalar, const RateGains&)> throttle_attenuation = Law::throttle_attenuation;
   std::function<Vector(const Vector&, Scalar, const RateGains&)> proportional = Law::proportional;
   std::function<Vector(const Vector&, const Vector&, Scalar, const RateGains&)> derivative =
@@ -67,7 +67,7 @@ struct RateStages {
 };
 
 struct RecoveryStages {
-  using Law = reference::RecoveryStages<Scalar>;
+  using Law = mc_att_control::RecoveryStages<Scalar>;
   std::function<RecoveryTilt(const Quaternion&, const Quaternion&)> tilt = Law::tilt;
   std::function<bool(bool, Scalar)> latch = Law::latch;
   std::function<Vector(const RecoveryTilt&)> optimal_rates = Law::optimal_rates;
@@ -79,7 +79,7 @@ struct RecoveryStages {
 };
 
 struct StepStages {
-  using Law = reference::StepStages<Scalar>;
+  using Law = mc_att_control::StepStages<Scalar>;
   std::function<Scalar(std::uint64_t, std::uint64_t)> step_time = Law::step_time;
   std::function<Gains(const Parameters&)> gains = Law::gains;
   std::function<bool(const decltype(Topics::manual)&, Scalar)> sticks_beyond = Law::sticks_beyond;

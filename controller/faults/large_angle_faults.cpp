@@ -7,7 +7,7 @@
 namespace attest::faults {
 namespace {
 
-namespace ordered = reference::ordered;
+namespace ordered = mc_att_control::ordered;
 
 // Blends error * (1 - share) + direct * share, with another share.
 template <typename Share>
@@ -21,11 +21,12 @@ void change_share(FaultyLaw& law, Share share) {
 template <typename Quaternions>
 void change_direct(FaultyLaw& law, Quaternions direct) {
   law.attitude.direct_error = [direct](const Matrix& R_WB, const Matrix& R_WD) {
-    return direct(R_WB, R_WD, reference::quaternion_of(ordered::transpose_product(R_WB, R_WD)));
+    return direct(R_WB, R_WD,
+                  mc_att_control::quaternion_of(ordered::transpose_product(R_WB, R_WD)));
   };
 }
 
-Vector imaginary(const Quaternion& q) { return reference::imaginary_part(q); }
+Vector imaginary(const Quaternion& q) { return mc_att_control::imaginary_part(q); }
 
 Vector shorter(const Quaternion& q) { return imaginary(q) * (q.w() >= 0 ? 2.0f : -2.0f); }
 
@@ -114,14 +115,14 @@ const Fault large_angle_list[] = {
      "an upset with a heading", "transposition",
      [](FaultyLaw& law) {
        change_direct(law, [](const Matrix& R, const Matrix& R_sp, const Quaternion&) {
-         return shorter(reference::quaternion_of(Matrix(R_sp * R.transpose())));
+         return shorter(mc_att_control::quaternion_of(Matrix(R_sp * R.transpose())));
        });
      }},
     {"direct-transposed", "large_angle", Stage::blend, "uses R_sp^T R instead of R^T R_sp",
      "a tilt error beyond 90 deg", "transposition",
      [](FaultyLaw& law) {
        change_direct(law, [](const Matrix& R, const Matrix& R_sp, const Quaternion&) {
-         return shorter(reference::quaternion_of(ordered::transpose_product(R_sp, R)));
+         return shorter(mc_att_control::quaternion_of(ordered::transpose_product(R_sp, R)));
        });
      }},
     {"direct-imag-0-to-2", "large_angle", Stage::blend, "uses q[0..2] as the imaginary part",

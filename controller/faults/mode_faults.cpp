@@ -140,7 +140,7 @@ const Fault modes[] = {
      [](FaultyLaw& law) {
        change_acro(law, [](RateCommand& command, const Manual&, const Gains& gains) {
          command.rates_sp_B =
-             reference::clamp_each<float>(command.rates_sp_B, gains.attitude.rate_max_rad_s);
+             mc_att_control::clamp_each<float>(command.rates_sp_B, gains.attitude.rate_max_rad_s);
        });
      }},
     {"acro-thrust-whole", "modes", Stage::mode, "does not limit thrust in acro",
@@ -205,9 +205,9 @@ const Fault modes[] = {
        also_before(law, [bound](attest_inputs& in) {
          auto& sp = in.vehicle_rates_setpoint;
          if ((*bound)[0] == 0) return;
-         sp.roll = reference::clamp(sp.roll, -(*bound)[0], (*bound)[0]);
-         sp.pitch = reference::clamp(sp.pitch, -(*bound)[1], (*bound)[1]);
-         sp.yaw = reference::clamp(sp.yaw, -(*bound)[2], (*bound)[2]);
+         sp.roll = mc_att_control::clamp(sp.roll, -(*bound)[0], (*bound)[0]);
+         sp.pitch = mc_att_control::clamp(sp.pitch, -(*bound)[1], (*bound)[1]);
+         sp.yaw = mc_att_control::clamp(sp.yaw, -(*bound)[2], (*bound)[2]);
        });
      }},
     {"pending-lost", "modes", Stage::mode,

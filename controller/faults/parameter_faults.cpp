@@ -29,8 +29,8 @@ void read_from(FaultyLaw& law) {
 // One parameter always has its default.
 template <float P::*member>
 void never_read(FaultyLaw& law) {
-  change_parameters(law,
-                    [](Parameters& p) { p.*member = reference::default_parameters().*member; });
+  change_parameters(
+      law, [](Parameters& p) { p.*member = mc_att_control::default_parameters().*member; });
 }
 
 template <typename Change>
@@ -190,7 +190,7 @@ const Fault parameter_list[] = {
      not_read,
      never_read<&P::mc_tpa_break>,
      {},
-     reference::from_v1_5_5},
+     mc_att_control::from_v1_5_5},
     {"tpa-slope-not-read",
      "parameters",
      Stage::parameters,
@@ -199,7 +199,7 @@ const Fault parameter_list[] = {
      not_read,
      never_read<&P::mc_tpa_slope>,
      {},
-     reference::from_v1_5_5},
+     mc_att_control::from_v1_5_5},
     {"vane-scale-not-read", "parameters", Stage::parameters, "does not read VT_WV_YAWR_SCL",
      "another value", not_read, never_read<&P::vt_wv_yawr_scl>},
     {"battery-enable-is-1",
@@ -214,7 +214,7 @@ const Fault parameter_list[] = {
        });
      },
      {},
-     reference::from_v1_5_5},
+     mc_att_control::from_v1_5_5},
     {"gains-in-8-bits", "parameters", Stage::parameters, "holds gains in 8 bits", "any gain",
      "fixed point",
      [](FaultyLaw& law) {

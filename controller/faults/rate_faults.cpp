@@ -117,7 +117,7 @@ const Fault rate_list[] = {
        };
      },
      {},
-     reference::from_v1_5_5},
+     mc_att_control::from_v1_5_5},
     {"ff-on-error",
      "rates",
      Stage::ff,
@@ -131,7 +131,7 @@ const Fault rate_list[] = {
        };
      },
      {},
-     reference::from_v1_5_5},
+     mc_att_control::from_v1_5_5},
     {"i-before-control", "rates", Stage::i,
      "adds this step's error to the integral before the control", "a rate error", "order of stages",
      [](FaultyLaw& law) {

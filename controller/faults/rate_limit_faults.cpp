@@ -13,7 +13,7 @@ using Mode = decltype(Topics::mode);
 template <typename Bound>
 void change_bound(FaultyLaw& law, Bound bound) {
   law.attitude.limit = [bound](const Vector& rates, bool autonomous, const AttitudeGains& gains) {
-    return reference::clamp_each<float>(rates, bound(autonomous, gains));
+    return mc_att_control::clamp_each<float>(rates, bound(autonomous, gains));
   };
 }
 
@@ -125,7 +125,7 @@ const Fault limit_faults[] = {
        });
      },
      {},
-     reference::from_v1_5_5},
+     mc_att_control::from_v1_5_5},
     {"auto-by-auto", "rate_limit", Stage::mode, "treats only the auto flag as autonomous",
      "velocity control without the auto flag", "a condition dropped",
      [](FaultyLaw& law) {
@@ -230,7 +230,7 @@ const Fault feed_forward_faults[] = {
        law.attitude.yaw_feed_forward = [bound](float yaw, float rate, float w,
                                                const AttitudeGains& gains) {
          const float fed = AttitudeStages::Law::yaw_feed_forward(yaw, rate, w, gains);
-         return reference::clamp(fed, -*bound, *bound);
+         return mc_att_control::clamp(fed, -*bound, *bound);
        };
      }},
     {"yaw-ff-limited-again", "yaw_feed_forward", Stage::feed_forward,

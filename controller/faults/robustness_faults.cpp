@@ -74,14 +74,14 @@ const Fault robustness_list[] = {
        };
      },
      {},
-     reference::from_v1_5_5},
+     mc_att_control::from_v1_5_5},
     {"nan-poisons-integral", "robustness", Stage::guard,
      "inverts the comparisons of the gates, so that NaN passes", "a NaN rate", "NaN handling",
      [](FaultyLaw& law) {
        law.rate.integrate_axis = [](float integral, float control, float thrust, float growth,
                                     bool frozen) {
          const float next = integral + growth;
-         const float bound = reference::integral_limit;
+         const float bound = mc_att_control::integral_limit;
          const bool shut = std::abs(control) >= thrust || next <= -bound || next >= bound ||
                            control <= -bound || control >= bound || frozen;
          return shut ? integral : next;

@@ -37,18 +37,18 @@ const Fault tailsitter_list[] = {
     {"recovery-no-latch", "tailsitter", Stage::recovery, "recovers above 30 deg only",
      "a recovery between 30 and 5 deg", "a latch",
      [](FaultyLaw& law) {
-       law.recovery.latch = [](bool, float tilt) { return tilt > reference::radians(30.0f); };
+       law.recovery.latch = [](bool, float tilt) { return tilt > mc_att_control::radians(30.0f); };
      }},
     {"recovery-from-5", "tailsitter", Stage::recovery, "recovers above 5 deg",
      "a tilt between 5 and 30 deg", "wrong branch threshold",
      [](FaultyLaw& law) {
-       law.recovery.latch = [](bool, float tilt) { return tilt > reference::radians(5.0f); };
+       law.recovery.latch = [](bool, float tilt) { return tilt > mc_att_control::radians(5.0f); };
      }},
     {"recovery-for-good", "tailsitter", Stage::recovery, "never ends a recovery",
      "a recovery below 5 deg", "a latch",
      [](FaultyLaw& law) {
        law.recovery.latch = [](bool now, float tilt) {
-         return now || tilt > reference::radians(30.0f);
+         return now || tilt > mc_att_control::radians(30.0f);
        };
      }},
     {"recovery-in-degrees", "tailsitter", Stage::recovery, "compares radians with 30 and 5",
@@ -95,7 +95,7 @@ const Fault tailsitter_list[] = {
      "a large yaw rate", "wrong branch",
      [](FaultyLaw& law) {
        law.recovery.limit = [](const Vector& rates, const AttitudeGains& gains) {
-         return reference::clamp_each<float>(rates, gains.auto_rate_max_rad_s);
+         return mc_att_control::clamp_each<float>(rates, gains.auto_rate_max_rad_s);
        };
      }},
     {"recovery-yaw-unclamped", "tailsitter", Stage::recovery, "does not clamp yaw to 1 rad/s",
@@ -104,7 +104,7 @@ const Fault tailsitter_list[] = {
        law.recovery.quaternion_rates = [](const Quaternion& q, const Quaternion& q_sp,
                                           const AttitudeGains& gains) {
          Vector rates = Stages::quaternion_rates(q, q_sp, gains);
-         const Quaternion e = reference::product(reference::conjugate(q_sp), q);
+         const Quaternion e = mc_att_control::product(mc_att_control::conjugate(q_sp), q);
          rates[2] = gains.proportional_1_s[2] * e.z() * (e.w() > 0 ? -2.0f : 2.0f);
          return rates;
        };
@@ -114,9 +114,10 @@ const Fault tailsitter_list[] = {
      [](FaultyLaw& law) {
        law.recovery.quaternion_rates = [](const Quaternion& q, const Quaternion& q_sp,
                                           const AttitudeGains& gains) {
-         const Quaternion e = reference::product(reference::conjugate(q_sp), q);
-         Vector rates = gains.proportional_1_s.cwiseProduct(reference::imaginary_part(e)) * -2.0f;
-         rates[2] = reference::clamp(rates[2], -1.0f, 1.0f);
+         const Quaternion e = mc_att_control::product(mc_att_control::conjugate(q_sp), q);
+         Vector rates =
+             gains.proportional_1_s.cwiseProduct(mc_att_control::imaginary_part(e)) * -2.0f;
+         rates[2] = mc_att_control::clamp(rates[2], -1.0f, 1.0f);
          return rates;
        };
      }},
@@ -134,7 +135,7 @@ const Fault tailsitter_list[] = {
      [](FaultyLaw& law) {
        law.recovery.yaw_feed_forward = [](float yaw, float rate, const Quaternion& q,
                                           const AttitudeGains& gains) {
-         return yaw + rate * reference::rotation_matrix(q)(2, 2) * gains.yaw_feed_forward;
+         return yaw + rate * mc_att_control::rotation_matrix(q)(2, 2) * gains.yaw_feed_forward;
        };
      }},
 };

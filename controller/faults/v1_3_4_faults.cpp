@@ -8,7 +8,7 @@
 namespace attest::faults {
 namespace {
 
-using reference::only_v1_3_4;
+using mc_att_control::only_v1_3_4;
 using V = const Vector&;
 
 template <typename FeedForward>

@@ -27,7 +27,7 @@ void limit_without_reset(FaultyLaw& law) {
 
 void limit_to(FaultyLaw& law, float (*bound)(const AttitudeGains&)) {
   law.attitude.weathervane_limit = [bound](float yaw, const AttitudeGains& gains) {
-    return reference::clamp(yaw, -bound(gains), bound(gains));
+    return mc_att_control::clamp(yaw, -bound(gains), bound(gains));
   };
 }
 

@@ -8,7 +8,7 @@
 namespace attest::faults {
 namespace {
 
-namespace ordered = reference::ordered;
+namespace ordered = mc_att_control::ordered;
 
 // The nose is the first column of R (I + by_sine K + by_square K K). Terms returns by_sine and
 // by_square.
@@ -16,7 +16,7 @@ template <typename Terms>
 void change_rodrigues(FaultyLaw& law, Terms terms) {
   law.attitude.nose_after_tilt = [terms](const Matrix& R_WB, const Tilt& tilt) -> Vector {
     if (!(tilt.sine > 0)) return R_WB.col(0);
-    const Matrix K = reference::cross_product_matrix(tilt.axis_B);
+    const Matrix K = mc_att_control::cross_product_matrix(tilt.axis_B);
     const auto [by_sine, by_square] = terms(tilt);
     const Matrix turn = Matrix::Identity() + K * by_sine + (K * K) * by_square;
     return R_WB * Vector(turn.col(0));
@@ -125,7 +125,7 @@ const Fault yaw_list[] = {
      [](FaultyLaw& law) {
        law.attitude.nose_after_tilt = [](const Matrix& R, const Tilt& tilt) -> Vector {
          if (!(tilt.sine > 0)) return R.col(0);
-         const Matrix K = reference::cross_product_matrix(tilt.axis_B) + Matrix::Identity();
+         const Matrix K = mc_att_control::cross_product_matrix(tilt.axis_B) + Matrix::Identity();
          const Matrix turn = Matrix::Identity() + K * tilt.sine + (K * K) * (1 - tilt.cosine);
          return R * Vector(turn.col(0));
        };
@@ -146,8 +146,8 @@ const Fault yaw_list[] = {
      [](FaultyLaw& law) {
        auto weight = std::make_shared<float>(1.0f);
        also_before(law, [weight](attest_inputs& in) {
-         const Matrix R =
-             reference::rotation_matrix(reference::quaternion_from<float>(in.control_state.q));
+         const Matrix R = mc_att_control::rotation_matrix(
+             mc_att_control::quaternion_from<float>(in.control_state.q));
          *weight = R(2, 2) * R(2, 2);
        });
        law.attitude.yaw_weight = [weight](const Matrix&) { return *weight; };

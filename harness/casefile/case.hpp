@@ -15,7 +15,7 @@
 #include "harness/casefile/run_configuration.hpp"
 #include "harness/casefile/signal.hpp"
 #include "harness/compare/tolerance.hpp"
-#include "harness/schedule/loop_rate.hpp"
+#include "harness/core/loop_rate.hpp"
 
 namespace attest {
 

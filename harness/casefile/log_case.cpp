@@ -15,9 +15,9 @@
 #include "harness/casefile/parse.hpp"
 #include "harness/casefile/parse_limits.hpp"
 #include "harness/core/agreement.hpp"
+#include "harness/core/rate.hpp"
 #include "harness/core/toml.hpp"
 #include "harness/port/profiles.hpp"
-#include "harness/schedule/rate.hpp"
 
 namespace attest {
 namespace {

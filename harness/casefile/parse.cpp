@@ -193,7 +193,7 @@ void parse_identity(const TomlTable& root, const fs::path& file, Case& parsed) {
 
 // The number of ticks at the fastest rate; 0 without a rate, which parse_rates() reports.
 std::int64_t most_ticks(const Case& parsed) {
-  return parsed.rates.empty() ? 0 : tick_count(parsed.duration, parsed.rates.back().unit);
+  return parsed.rates.empty() ? 0 : tick_count(parsed.duration, parsed.rates.back().motor_unit);
 }
 
 void parse_duration(const TomlTable& root, Case& parsed) {
@@ -223,8 +223,8 @@ fs::path models_of_suite(const fs::path& file) {
 void parse_units(const TomlTable& root, Case& parsed) {
   std::vector<Rate> rates, attitude_rates;
   for (const LoopRate& rate : parsed.rates) {
-    rates.push_back(rate.unit);
-    attitude_rates.push_back(rate.attitude_unit.value_or(rate.unit));
+    rates.push_back(rate.motor_unit);
+    attitude_rates.push_back(rate.attitude_unit.value_or(rate.motor_unit));
   }
   parsed.unit = parse_unit(root);
   check_unit(root, "unit", parsed.unit, rates, parsed.duration);

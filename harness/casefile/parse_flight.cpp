@@ -84,10 +84,10 @@ void parse_physics(const TomlTable& table, const std::vector<LoopRate>& rates, F
   const auto physics = Rate::parse(fmt::format("{}", table.number(key)));
   if (!physics) return table.error(key, physics.error().message);
   flight.physics = *physics;
-  if (!rates.empty() && *physics < rates.back().unit) {
+  if (!rates.empty() && *physics < rates.back().motor_unit) {
     table.error(key, fmt::format("physics at {} Hz is slower than the loop at {} Hz; raise it, "
                                  "leave it out, or set `rates_hz` to lower rates",
-                                 physics->to_string(), rates.back().unit.to_string()));
+                                 physics->to_string(), rates.back().motor_unit.to_string()));
   }
 }
 

@@ -11,7 +11,7 @@
 namespace attest {
 
 Result<void> check_ticks(const Case& the_case, const LoopRate& rate, std::int64_t most) {
-  const std::int64_t ticks = tick_count(the_case.duration, rate.unit);
+  const std::int64_t ticks = tick_count(the_case.duration, rate.motor_unit);
   if (ticks <= most) return {};
   return fail_at(the_case.file.string(),
                  fmt::format("is {} ticks at {} Hz, and at most {} are possible; use a lower rate "
@@ -90,7 +90,7 @@ void check_flight(const TomlTable& flight, const Case& the_case, const Timeline&
 void check_limits(const TomlTable& root, const Case& parsed) {
   if (parsed.rates.empty()) return;
   // A case in ticks lasts longest at the slowest rate.
-  const Timeline timeline = timeline_of(parsed, parsed.rates.front().unit);
+  const Timeline timeline = timeline_of(parsed, parsed.rates.front().motor_unit);
   for (const TopicStimulus& topic : parsed.topics) check_topic(root, topic, timeline);
   if (parsed.attitude_loop) {
     for (const TopicStimulus& topic : parsed.attitude_loop->topics) {

@@ -22,7 +22,7 @@ std::vector<LoopRate> distinct_time_steps(const std::vector<LoopRate>& rates) {
   }
   std::vector<LoopRate> distinct;
   for (const LoopRate& rate : rates) {
-    if (!(Rate::hz(500) < rate.unit) || rate == rates.back()) distinct.push_back(rate);
+    if (!(Rate::hz(500) < rate.motor_unit) || rate == rates.back()) distinct.push_back(rate);
   }
   return distinct;
 }

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "harness/core/loop_rate.hpp"
 #include "harness/plant/plant.hpp"
-#include "harness/schedule/loop_rate.hpp"
 
 namespace attest {
 

@@ -103,7 +103,7 @@ bool may_be_selected(const fs::path& file, const Selection& selection) {
 // "1000" selects the vectors of one unit at 1000 Hz, and each pair whose rate unit runs at 1000 Hz;
 // "250:1000" selects this pair only.
 bool is_meant(const LoopRate& asked, const LoopRate& rate) {
-  return asked.attitude_unit ? asked == rate : asked.unit == rate.unit;
+  return asked.attitude_unit ? asked == rate : asked.motor_unit == rate.motor_unit;
 }
 
 bool has_rate(const RunConfiguration& configuration, const std::vector<LoopRate>& asked) {

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <numbers>
 
-#include "harness/schedule/random.hpp"
+#include "harness/core/random.hpp"
 
 namespace attest {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "controller/actuation/mixer.hpp"
 #include "harness/core/agreement.hpp"
-#include "harness/schedule/ticks.hpp"
+#include "harness/core/ticks.hpp"
 
 namespace attest {
 namespace {

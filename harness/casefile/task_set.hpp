@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "harness/core/fixed_priority.hpp"
+#include "harness/core/loop_rate.hpp"
 #include "harness/core/result.hpp"
-#include "harness/schedule/fixed_priority.hpp"
-#include "harness/schedule/loop_rate.hpp"
 
 namespace attest {
 

@@ -9,7 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "controller/elementary/fixed_arguments.hpp"
-#include "controller/reference/profile.hpp"
+#include "controller/mc_att_control/profile.hpp"
 #include "harness/casefile/select.hpp"
 #include "harness/cli/command.hpp"
 #include "harness/cli/examination.hpp"

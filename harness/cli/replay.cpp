@@ -173,7 +173,7 @@ class Replay {
   }
 
   // A page shows the whole trace. Without one, the trace need not be in memory as a whole.
-  Result<VectorResult> evaluated(TraceParts& trace, const Subject& subject) {
+  Result<VectorResult> evaluated(TraceParts& trace, const ModuleUnderTest& subject) {
     const Tolerances tolerances(level_);
     if (options_.html.empty()) return evaluate_parts(trace, subject, *host_, tolerances);
     Trace whole, got;
@@ -184,7 +184,7 @@ class Replay {
     return result;
   }
 
-  Result<void> judge_trace(TraceParts& trace, const Subject& subject) {
+  Result<void> judge_trace(TraceParts& trace, const ModuleUnderTest& subject) {
     const auto evaluation = evaluated(trace, subject);
     if (!evaluation) return tl::unexpected(evaluation.error());
     const VectorResult& result = *evaluation;

@@ -59,7 +59,7 @@ Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder
   }
   if (auto few = check_ticks(the_case, set->rate()); !few) return tl::unexpected(few.error());
   const RunConfiguration configuration{set->rate(), chosen->plant_configuration};
-  const Nanoseconds duration = timeline_of(the_case, configuration.rate.unit).duration;
+  const Nanoseconds duration = timeline_of(the_case, configuration.rate.motor_unit).duration;
   auto jobs = simulate(set->tasks, duration);
   if (!jobs) return fail_at(options.tasks, jobs.error().message);
   plan.scheduled = {the_case.id(), the_case.sha256, configuration, in_seconds(duration),

@@ -139,8 +139,8 @@ class StressProgressLine {
 // Empty: cyclictest gave no result. If it is installed, a note explains the missing row of the
 // report.
 std::optional<Cyclictest> idle_by_cyclictest(const StressTask& task) {
-  auto idle =
-      run_cyclictest(task.configuration.rate.unit, task.idle_duration, task.live, interrupted);
+  auto idle = run_cyclictest(task.configuration.rate.motor_unit, task.idle_duration, task.live,
+                             interrupted);
   if (!idle && !interrupted() && is_installed("cyclictest")) {
     fmt::print(stderr, "attest: cyclictest failed, or gave no figures in time\n");
   }

@@ -9,8 +9,8 @@
 
 #include "harness/casefile/parse.hpp"
 #include "harness/core/file.hpp"
+#include "harness/core/rate.hpp"
 #include "harness/core/result.hpp"
-#include "harness/schedule/rate.hpp"
 
 namespace attest::cli {
 

@@ -6,7 +6,7 @@
 #include "harness/cli/command.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
-#include "harness/recording/manifest.hpp"
+#include "harness/host/manifest.hpp"
 #include "harness/verify/recorded_vectors.hpp"
 
 namespace attest::cli {

@@ -15,8 +15,8 @@
 #include "controller/cascade/unit_table.hpp"
 #include "controller/cascade/whole.hpp"
 #include "controller/elementary/float_with.hpp"
-#include "controller/reference/mc_att_control_definition.hpp"
-#include "controller/reference/unit_table.hpp"
+#include "controller/mc_att_control/mc_att_control_definition.hpp"
+#include "controller/mc_att_control/unit_table.hpp"
 #include "harness/compare/compare.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/port/abi_port.hpp"
@@ -61,7 +61,7 @@ const void* extension_in_chosen(const char* id) noexcept {
 }
 
 constexpr attest_unit law_in_chosen =
-    reference::UnitTable<reference::McAttControl<ChosenFloat>>::named(
+    mc_att_control::UnitTable<mc_att_control::McAttControl<ChosenFloat>>::named(
         "attest-c-library", "of this machine", extension_in_chosen);
 
 // The number of ticks at which the law has the port's outputs when it makes these calls.
@@ -70,7 +70,7 @@ Result<std::size_t> matches(Trace got, LibraryCalls calls, const Declarations& p
   chosen = calls;
   differed = 0;
   AbiPort in_chosen(law_in_chosen);
-  Subject subject = subject_of(the_case);
+  ModuleUnderTest subject = subject_of(the_case);
   subject.instances = Instances::one;  // on this thread
   Trace law = got;
   for (Sample& sample : law.samples) sample.clear_outputs();

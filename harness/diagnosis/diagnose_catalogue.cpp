@@ -21,9 +21,9 @@ struct Answered {
 
 Rate rate_for(const SelectedCase& selected) {
   for (const RunConfiguration& configuration : selected.configurations) {
-    if (configuration.rate == Rate::hz(250)) return configuration.rate.unit;
+    if (configuration.rate == Rate::hz(250)) return configuration.rate.motor_unit;
   }
-  return selected.configurations.front().rate.unit;
+  return selected.configurations.front().rate.motor_unit;
 }
 
 StageSet first_stages(const Outputs& outputs, const Trace& law) {
@@ -94,7 +94,7 @@ StageSet visible_stages(faults::Stage stage) {
 }
 
 Answered answered(const SelectedCase& selected) {
-  const Subject subject = subject_of(selected.the_case);
+  const ModuleUnderTest subject = subject_of(selected.the_case);
   // A case of the suite, for which the reference has no fault.
   const Trace law =
       reference_outputs(subject, stimulate(selected.the_case, rate_for(selected))).value();

@@ -36,9 +36,9 @@ std::vector<Vector> vectors_of(const std::vector<SelectedCase>& cases,
   std::map<std::string, Rate> nearest;
   for (const VectorResult& result : results) {
     if (result.plant_configuration || !wanted(result)) continue;
-    const auto [place, is_new] = nearest.try_emplace(result.case_id(), result.rate.unit);
-    if (!is_new && distance_from_250(result.rate.unit) < distance_from_250(place->second)) {
-      place->second = result.rate.unit;
+    const auto [place, is_new] = nearest.try_emplace(result.case_id(), result.rate.motor_unit);
+    if (!is_new && distance_from_250(result.rate.motor_unit) < distance_from_250(place->second)) {
+      place->second = result.rate.motor_unit;
     }
   }
   std::vector<Vector> vectors;
@@ -110,7 +110,7 @@ Result<VectorDiagnosis> DiagnosisJob::run(std::size_t) {
   auto outputs = reference_outputs(subject_of(case_), got);
   if (!outputs) return std::nullopt;
   Trace law = *std::move(outputs);
-  const Subject subject = subject_of(case_);
+  const ModuleUnderTest subject = subject_of(case_);
   if ((*host)->drive(subject, got)) return std::nullopt;
   const auto at = [&](Level level) {
     return tolerances_of(case_, case_.numeric_only ? Level::numeric : level, port.fraction_bits,

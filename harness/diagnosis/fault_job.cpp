@@ -78,7 +78,7 @@ Result<FaultCatch> FaultJob::run(std::size_t) {
     if (the_case->exact_only && !fault_.is_detectable(profile_)) continue;
     const Level level = level_.value_or(the_case->exact_only ? Level::exact : Level::numeric);
     if (the_case->exact_only && level != Level::exact) continue;  // its outputs are not compared
-    const auto result = evaluate_case(*the_case, rate.unit, *golden, host, {level});
+    const auto result = evaluate_case(*the_case, rate.motor_unit, *golden, host, {level});
     if (!result) return tl::unexpected(result.error());
     if (!fails_a_run(result->verdict)) continue;
     found.verdict = result->verdict;

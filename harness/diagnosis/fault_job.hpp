@@ -13,8 +13,8 @@
 #include "harness/casefile/select.hpp"
 #include "harness/compare/tolerance.hpp"
 #include "harness/golden/golden.hpp"
+#include "harness/process/job.hpp"
 #include "harness/verify/verdict.hpp"
-#include "harness/workers/job.hpp"
 
 namespace attest {
 

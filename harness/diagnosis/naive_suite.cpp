@@ -4,10 +4,10 @@
 
 #include "harness/casefile/baseline.hpp"
 #include "harness/compare/compare.hpp"
+#include "harness/core/random.hpp"
 #include "harness/golden/expected_outputs.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/port/profiles.hpp"
-#include "harness/schedule/random.hpp"
 
 namespace attest {
 namespace {
@@ -106,7 +106,7 @@ Trace random_attitudes(Module module) {
 }
 
 bool differs(Port& port, const std::string& profile, Module module, Trace given) {
-  const Subject subject{.profile = profile, .module = module};
+  const ModuleUnderTest subject{.profile = profile, .module = module};
   const Trace want = reference_outputs(subject, given).value();
   if (drive(port, subject, given)) return true;
   return compare(given, want, Tolerances()).first.has_value();

@@ -89,7 +89,7 @@ Outputs outputs_of(const Trace& trace) {
   return outputs;
 }
 
-FaultAnswers answers_of_faults(const Trace& given, const Subject& subject,
+FaultAnswers answers_of_faults(const Trace& given, const ModuleUnderTest& subject,
                                const faults::Fault* partner) {
   FaultAnswers answers;
   Trace answered = given;

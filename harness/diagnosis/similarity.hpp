@@ -52,7 +52,7 @@ struct FaultAnswers {
 
 // The outputs of each fault for the inputs of `given`. Each fault runs together with `partner`,
 // unless that is null.
-FaultAnswers answers_of_faults(const Trace& given, const Subject& subject,
+FaultAnswers answers_of_faults(const Trace& given, const ModuleUnderTest& subject,
                                const faults::Fault* partner = nullptr);
 
 // Compares the port's outputs with each of the distinct outputs, in the channels of `module`.

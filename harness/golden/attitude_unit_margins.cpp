@@ -14,7 +14,7 @@ using TraitsOfLaw = cascade::ProfileTraits;
 
 // The angle [rad] between an axis and (0, 0, -1). At 0, the shortest rotation from (0, 0, 1) to the
 // axis is arbitrary.
-double from_opposite(const reference::Vector3<double>& axis) {
+double from_opposite(const mc_att_control::Vector3<double>& axis) {
   return std::numbers::pi - std::atan2(std::hypot(axis[0], axis[1]), axis[2]);
 }
 
@@ -90,7 +90,7 @@ struct NotingSticks : cascade::StickStages<double> {
     return sum;
   }
   Q tilt_for_yaw_error(const Q& tilt, const Q& desired_yaw, const Q& q_WB) const {
-    const reference::Vector3<double> up(0, 0, 1), z = cascade::z_axis(q_WB);
+    const mc_att_control::Vector3<double> up(0, 0, 1), z = cascade::z_axis(q_WB);
     const Q yaw = cascade::product(cascade::inverse(cascade::shortest_rotation(up, z)), q_WB);
     const Q to_desired = cascade::product(cascade::inverse(desired_yaw), yaw);
     notes->note(Decision::tilt_axis, from_opposite(z));

@@ -4,40 +4,40 @@
 #include <numbers>
 #include <optional>
 
-#include "controller/reference/mc_att_control_definition.hpp"
+#include "controller/mc_att_control/mc_att_control_definition.hpp"
 #include "harness/golden/margin_meters.hpp"
 
 namespace attest {
 namespace {
 
-using reference::AttitudeGains;
-using reference::Matrix3;
-using reference::Quaternion;
-using reference::Topics;
-using Vector3d = reference::Vector3<double>;
+using mc_att_control::AttitudeGains;
+using mc_att_control::Matrix3;
+using mc_att_control::Quaternion;
+using mc_att_control::Topics;
+using Vector3d = mc_att_control::Vector3<double>;
 using Matrix3d = Matrix3<double>;
-using Tilt = reference::TiltError<double>;
+using Tilt = mc_att_control::TiltError<double>;
 
-struct NotingStep : reference::StepStages<double> {
+struct NotingStep : mc_att_control::StepStages<double> {
   MarginNotes* notes;
 
   bool sticks_beyond(const decltype(Topics::manual)& manual, double threshold) const {
     const double x = std::abs(double(manual.x)), y = std::abs(double(manual.y));
     // One stick beyond the threshold is enough, so the larger decides.
     notes->note(Decision::rattitude, std::abs(std::max(x, y) - threshold));
-    return reference::StepStages<double>::sticks_beyond(manual, threshold);
+    return mc_att_control::StepStages<double>::sticks_beyond(manual, threshold);
   }
-  float battery_factor(const Topics& topics, const reference::Gains<double>& gains,
-                       reference::Profile profile) const {
+  float battery_factor(const Topics& topics, const mc_att_control::Gains<double>& gains,
+                       mc_att_control::Profile profile) const {
     const double scale = std::abs(double(topics.battery_scale));
     // Every port takes a scale of exactly 0 as no scaling.
     if (gains.battery_scaling && scale != 0) notes->note(Decision::battery_scale, scale);
-    return reference::StepStages<double>::battery_factor(topics, gains, profile);
+    return mc_att_control::StepStages<double>::battery_factor(topics, gains, profile);
   }
 };
 
-struct NotingAttitude : reference::AttitudeStages<double> {
-  using Law = reference::AttitudeStages<double>;
+struct NotingAttitude : mc_att_control::AttitudeStages<double> {
+  using Law = mc_att_control::AttitudeStages<double>;
   MarginNotes* notes;
 
   Tilt tilt_error(const Matrix3d& R_WB, const Matrix3d& R_WD) const {
@@ -59,7 +59,8 @@ struct NotingAttitude : reference::AttitudeStages<double> {
     return error;
   }
   Vector3d direct_error(const Matrix3d& R_WB, const Matrix3d& R_WD) const {
-    const auto q = reference::quaternion_of(reference::ordered::transpose_product(R_WB, R_WD));
+    const auto q =
+        mc_att_control::quaternion_of(mc_att_control::ordered::transpose_product(R_WB, R_WD));
     notes->note(Decision::shorter_rotation, std::abs(q.w()));
     return Law::direct_error(R_WB, R_WD);
   }
@@ -68,13 +69,14 @@ struct NotingAttitude : reference::AttitudeStages<double> {
 // The distance of `value` from the nearer end of (-bound, bound): negative if `value` is outside.
 double inside(double value, double bound) { return bound - std::abs(value); }
 
-struct NotingRate : reference::RateStages<double> {
-  using Law = reference::RateStages<double>;
+struct NotingRate : mc_att_control::RateStages<double> {
+  using Law = mc_att_control::RateStages<double>;
   MarginNotes* notes;
 
-  bool may_integrate(double thrust_sp, const reference::MotorLimits& limits) const {
+  bool may_integrate(double thrust_sp, const mc_att_control::MotorLimits& limits) const {
     if (!limits.lower && !limits.upper) {
-      notes->note(Decision::thrust_gate, std::abs(thrust_sp - double(reference::takeoff_thrust)));
+      notes->note(Decision::thrust_gate,
+                  std::abs(thrust_sp - double(mc_att_control::takeoff_thrust)));
     }
     return Law::may_integrate(thrust_sp, limits);
   }
@@ -84,7 +86,7 @@ struct NotingRate : reference::RateStages<double> {
     // matter.
     constexpr double negligible = 2e-6;
     if (!frozen && std::abs(growth) > negligible) {
-      const double bound = double(reference::integral_limit);
+      const double bound = double(mc_att_control::integral_limit);
       const std::array gates = {inside(control, thrust_sp), inside(integral + growth, bound),
                                 inside(control, bound)};
       // If all gates are open, the nearest to closing decides. Otherwise all closed gates have to
@@ -96,18 +98,18 @@ struct NotingRate : reference::RateStages<double> {
   }
 };
 
-struct NotingRecovery : reference::RecoveryStages<double> {
-  using Law = reference::RecoveryStages<double>;
+struct NotingRecovery : mc_att_control::RecoveryStages<double> {
+  using Law = mc_att_control::RecoveryStages<double>;
   MarginNotes* notes;
 
   bool latch(bool recovering, double tilt_rad) const {
-    const double threshold = reference::radians(recovering ? 5.0 : 30.0);
+    const double threshold = mc_att_control::radians(recovering ? 5.0 : 30.0);
     notes->note(Decision::recovery_latch, std::abs(tilt_rad - threshold));
     return Law::latch(recovering, tilt_rad);
   }
   Vector3d quaternion_rates(const Quaternion<double>& q_WB, const Quaternion<double>& q_WD,
                             const AttitudeGains<double>& gains) const {
-    const Quaternion<double> q = reference::product(reference::conjugate(q_WD), q_WB);
+    const Quaternion<double> q = mc_att_control::product(mc_att_control::conjugate(q_WD), q_WB);
     notes->note(Decision::recovery_rotation, std::abs(q.w()));
     return Law::quaternion_rates(q_WB, q_WD, gains);
   }
@@ -131,12 +133,12 @@ void note_norm(const float (&q)[4], MarginNotes& notes) {
   notes.note(Decision::quaternion_norm, std::abs(std::sqrt(squared) - 1));
 }
 
-using LawMeter = UnitMeter<reference::McAttControl<double, NotingController>, NotingController,
+using LawMeter = UnitMeter<mc_att_control::McAttControl<double, NotingController>, NotingController,
                            attest_inputs, attest_outputs>;
 
 class ControllerMeter final : public LawMeter {
  public:
-  explicit ControllerMeter(reference::Profile profile) : LawMeter(profile, &Sample::in) {}
+  explicit ControllerMeter(mc_att_control::Profile profile) : LawMeter(profile, &Sample::in) {}
 
  private:
   void measure(std::span<const ParameterChange> changes, const Sample& sample) override {
@@ -152,7 +154,7 @@ class ControllerMeter final : public LawMeter {
 }  // namespace
 
 std::unique_ptr<MarginMeter> controller_meter(const std::string& profile) {
-  const auto known = reference::profile_from_name(profile);
+  const auto known = mc_att_control::profile_from_name(profile);
   return known ? std::make_unique<ControllerMeter>(*known) : nullptr;
 }
 

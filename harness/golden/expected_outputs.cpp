@@ -75,8 +75,8 @@ Result<ExpectedOutputs> confirmed(Trace computed, const GoldenTrace& golden, con
 
 }  // namespace
 
-Result<Trace> reference_outputs(const Subject& subject, Trace inputs) {
-  Subject alone = subject;
+Result<Trace> reference_outputs(const ModuleUnderTest& subject, Trace inputs) {
+  ModuleUnderTest alone = subject;
   alone.instances = Instances::one;
   if (const auto fault = drive(*open_builtin(), alone, inputs)) {
     return fail_at(inputs.source, fmt::format("the reference: {}", fault->what));

@@ -12,7 +12,7 @@ namespace attest {
 
 // `inputs` with the outputs of the reference, as one instance of the subject's module. Errors: the
 // reference fails.
-Result<Trace> reference_outputs(const Subject& subject, Trace inputs);
+Result<Trace> reference_outputs(const ModuleUnderTest& subject, Trace inputs);
 
 struct ExpectedOutputs {
   Trace trace;  // the inputs of the vector, with the outputs that are right for them

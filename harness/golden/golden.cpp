@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "harness/recording/manifest.hpp"
+#include "harness/host/manifest.hpp"
 
 namespace attest {
 namespace {
@@ -57,7 +57,7 @@ bool keeps_every_tick(std::size_t ticks) {
 }
 
 bool is_long(const Case& the_case) {
-  const std::int64_t ticks = tick_count(the_case.duration, the_case.rates.back().unit);
+  const std::int64_t ticks = tick_count(the_case.duration, the_case.rates.back().motor_unit);
   return !the_case.flight && !keeps_every_tick(static_cast<std::size_t>(ticks));
 }
 

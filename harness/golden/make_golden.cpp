@@ -10,8 +10,8 @@
 #include "harness/golden/keyframes.hpp"
 #include "harness/golden/reference_flight.hpp"
 #include "harness/host/in_process_host.hpp"
+#include "harness/host/manifest.hpp"
 #include "harness/port/builtin.hpp"
-#include "harness/recording/manifest.hpp"
 
 namespace attest {
 namespace {
@@ -41,7 +41,7 @@ std::vector<std::size_t> every_tick(const Trace& trace) {
 // sets `made.left_out` instead.
 Result<void> add_open_loop(const Case& the_case, const RunConfiguration& configuration,
                            Reference& reference, MadeGolden& made) {
-  Trace trace = stimulate(the_case, configuration.rate.unit);
+  Trace trace = stimulate(the_case, configuration.rate.motor_unit);
   const std::string inputs = reference.is_own() ? "" : sha256_of_inputs(trace);
   if (const auto fault = reference.drive(subject_of(the_case), trace)) {
     if (!reference.is_own() && does_not_have_it(*fault)) {
@@ -85,7 +85,7 @@ Result<Reference> Reference::of_port(const HostOptions& options) {
   return reference;
 }
 
-std::optional<PortFault> Reference::drive(const Subject& subject, Trace& trace) {
+std::optional<PortFault> Reference::drive(const ModuleUnderTest& subject, Trace& trace) {
   Trace second = trace;
   if (auto fault = host_->drive(subject, trace)) return fault;
   if (is_own()) return std::nullopt;

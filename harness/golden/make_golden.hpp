@@ -20,7 +20,7 @@ class Reference {
   static Result<Reference> of_port(const HostOptions& options);
 
   bool is_own() const { return again_ == nullptr; }
-  std::optional<PortFault> drive(const Subject& subject, Trace& trace);
+  std::optional<PortFault> drive(const ModuleUnderTest& subject, Trace& trace);
 
  private:
   explicit Reference(std::unique_ptr<PortHost> host) : host_(std::move(host)) {}

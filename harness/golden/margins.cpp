@@ -11,7 +11,7 @@ const Margins& MarginMeter::step(std::span<const ParameterChange> changes, const
   return notes_.margins;
 }
 
-std::unique_ptr<MarginMeter> margin_meter(const Subject& subject) {
+std::unique_ptr<MarginMeter> margin_meter(const ModuleUnderTest& subject) {
   switch (subject.module) {
     case Module::mc_att_control:
       return controller_meter(subject.profile);

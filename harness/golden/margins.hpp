@@ -40,7 +40,7 @@ class MarginMeter {
 
 // Null if the module has no decisions (a battery estimate is continuous), if the reference does not
 // have the profile, or if the definition of the mixer is wrong.
-std::unique_ptr<MarginMeter> margin_meter(const Subject& subject);
+std::unique_ptr<MarginMeter> margin_meter(const ModuleUnderTest& subject);
 
 // The nearest margins of all ticks of `given`. REQUIRES: `meter` has made no step yet.
 Margins margins(const Trace& given, MarginMeter& meter);

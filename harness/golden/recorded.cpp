@@ -59,11 +59,11 @@ std::string newest_profile_of(Module module) {
   return std::string(found == all.end() ? default_profile : found->name);
 }
 
-Result<Subject> subject_of(const TraceReader& reader, const std::filesystem::path& file,
-                           const std::string& profile, const std::string& mixer) {
+Result<ModuleUnderTest> subject_of(const TraceReader& reader, const std::filesystem::path& file,
+                                   const std::string& profile, const std::string& mixer) {
   const auto provenance = provenance_of(file);
   if (!provenance) return tl::unexpected(provenance.error());
-  Subject subject{profile, module_of(reader.present())};
+  ModuleUnderTest subject{profile, module_of(reader.present())};
   if (subject.profile.empty()) subject.profile = provenance->profile;
   if (subject.profile.empty()) subject.profile = newest_profile_of(subject.module);
   if (subject.module == Module::mixer) {
@@ -86,7 +86,7 @@ void note_ignored(const std::vector<std::string>& names, std::vector<std::string
 
 }  // namespace
 
-Result<void> check_parameter(const Subject& subject, const ParameterChange& change) {
+Result<void> check_parameter(const ModuleUnderTest& subject, const ParameterChange& change) {
   const std::vector<std::string> names = parameter_names(subject.module, subject.profile);
   if (!is_one_of(change.name, names)) {
     return fail(fmt::format("unknown parameter `{}` of {} in {}{}", change.name,

@@ -20,7 +20,7 @@ inline constexpr const char* default_profile = "px4-v1.5.5";
 
 struct Recorded {
   Trace trace;
-  Subject subject;
+  ModuleUnderTest subject;
   // Assumptions and omissions that let a port replay the trace: one line each.
   std::vector<std::string> notes;
 };
@@ -34,7 +34,7 @@ class RecordedParts final : public TraceParts {
 
   const std::string& file() const override { return reader_.file(); }
   const ChannelSet& present() const override { return reader_.present(); }
-  const Subject& subject() const { return subject_; }
+  const ModuleUnderTest& subject() const { return subject_; }
   const std::vector<std::string>& notes() const { return notes_; }
 
   // Same as override_parameter(), for the trace as a whole. REQUIRES: no part was read since the
@@ -45,13 +45,13 @@ class RecordedParts final : public TraceParts {
   Result<void> rewind() override;
 
  private:
-  RecordedParts(TraceReader reader, Subject subject)
+  RecordedParts(TraceReader reader, ModuleUnderTest subject)
       : reader_(std::move(reader)), subject_(std::move(subject)) {}
   void adapt_parameters(const Trace& first);
   void give_cells(const Trace& first);
 
   TraceReader reader_;
-  Subject subject_;
+  ModuleUnderTest subject_;
   std::vector<std::string> notes_;
   std::set<std::string> foreign_;       // parameters of the file that are left out
   std::set<std::string> overridden_;    // parameters of the file that `added_` replaces
@@ -71,7 +71,7 @@ Result<Recorded> read_recorded(const std::filesystem::path& file, const std::str
                                const std::string& mixer = "");
 
 // Errors: in that profile the module does not have such a parameter, or does not accept the value.
-Result<void> check_parameter(const Subject& subject, const ParameterChange& change);
+Result<void> check_parameter(const ModuleUnderTest& subject, const ParameterChange& change);
 
 // Parses the text of --param: "MC_ROLL_P=6.5" is a change at tick 0. Errors: not NAME=VALUE with a
 // finite number.

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "harness/casefile/case.hpp"
+#include "harness/core/loop_timing.hpp"
 #include "harness/core/result.hpp"
 #include "harness/plant/plant.hpp"
-#include "harness/schedule/loop_timing.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace attest {

@@ -11,7 +11,7 @@ void add(const Case& the_case, const RunConfiguration& configuration, SuiteMargi
     ++all.not_measured;
     return;
   }
-  const Margins found = margins(stimulate(the_case, configuration.rate.unit), *meter);
+  const Margins found = margins(stimulate(the_case, configuration.rate.motor_unit), *meter);
   ++all.vectors;
   for (std::size_t i = 0; i < decision_count; ++i) {
     const auto decision = static_cast<Decision>(i);

@@ -8,13 +8,13 @@
 namespace attest {
 namespace {
 
-std::string text_of(const std::optional<int>& bits) {
+std::string words_of(const std::optional<int>& bits) {
   return bits ? fmt::format("fixed:{}", *bits) : "none";
 }
 
-std::string text_of(const std::optional<Rate>& rate) { return rate ? rate->to_string() : "none"; }
+std::string words_of(const std::optional<Rate>& rate) { return rate ? rate->to_string() : "none"; }
 
-std::string text_of(const ModuleSet& set) {
+std::string words_of(const ModuleSet& set) {
   std::vector<std::string_view> names;
   for (const ModuleInfo& info : modules()) {
     if (contains(set, info.module)) names.push_back(info.name);
@@ -22,7 +22,7 @@ std::string text_of(const ModuleSet& set) {
   return fmt::format("{}", fmt::join(names, ","));
 }
 
-std::string text_of(const std::vector<std::string>& names) {
+std::string words_of(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(names, ","));
 }
 
@@ -38,12 +38,12 @@ std::string change(const Declarations& said, const Declarations& now) {
   };
   for (const std::string& difference :
        {changed("name", said.name, now.name), changed("version", said.version, now.version),
-        changed("attest.unsupported_groups", text_of(said.unsupported_groups),
-                text_of(now.unsupported_groups)),
-        changed("attest.arithmetic", text_of(said.fraction_bits), text_of(now.fraction_bits)),
-        changed("attest.fixed_step", text_of(said.fixed_step), text_of(now.fixed_step)),
-        changed("list of modules", text_of(said.modules), text_of(now.modules)),
-        changed("list of files", text_of(said.files), text_of(now.files))}) {
+        changed("attest.unsupported_groups", words_of(said.unsupported_groups),
+                words_of(now.unsupported_groups)),
+        changed("attest.arithmetic", words_of(said.fraction_bits), words_of(now.fraction_bits)),
+        changed("attest.fixed_step", words_of(said.fixed_step), words_of(now.fixed_step)),
+        changed("list of modules", words_of(said.modules), words_of(now.modules)),
+        changed("list of files", words_of(said.files), words_of(now.files))}) {
     if (!difference.empty()) return difference;
   }
   return "";

@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-json to_json(const Subject& subject) {
+json to_json(const ModuleUnderTest& subject) {
   return {{"profile", subject.profile},
           {"module", subject.module},
           {"mixer", subject.mixer},
@@ -65,7 +65,7 @@ Declarations declarations_from(JsonReader in) {
   return says;
 }
 
-Subject subject_from(const json& in) {
+ModuleUnderTest subject_from(const json& in) {
   return {in.at("profile").get<std::string>(),
           in.at("module").get<Module>(),
           in.at("mixer").get<std::string>(),
@@ -104,7 +104,7 @@ class Answerer {
 
  private:
   bool drive(const json& head) {
-    const Subject subject = subject_from(head.at("subject"));
+    const ModuleUnderTest subject = subject_from(head.at("subject"));
     Trace trace = trace_from(head, subject.module, question_.blobs);
     json answer = json::object();
     set_end(host_.drive(subject, trace), {}, answer);
@@ -139,7 +139,7 @@ class Answerer {
   }
 
   bool time(const json& head) {
-    const Subject subject = subject_from(head.at("subject"));
+    const ModuleUnderTest subject = subject_from(head.at("subject"));
     const Trace trace = trace_from(head, subject.module, question_.blobs);
     const auto times = host_.time_steps(subject, trace, head.at("stack").get<bool>());
     if (!times) return refuse(times.error(), question_.request, judge_);
@@ -224,7 +224,7 @@ void read_attitude_unit(const Arrived& arrived, const FlightPlan& plan, JsonRead
 
 }  // namespace
 
-std::string drive_request(const Subject& subject, const Trace& trace) {
+std::string drive_request(const ModuleUnderTest& subject, const Trace& trace) {
   return text_of({{"do", "drive"},
                   {"subject", to_json(subject)},
                   {"ticks", trace.samples.size()},
@@ -241,7 +241,7 @@ std::string fly_request(const FlightPlan& plan) {
                   {"from_one_period_on", plan.from_one_period_on}});
 }
 
-std::string time_request(const Subject& subject, const Trace& inputs, bool with_stack) {
+std::string time_request(const ModuleUnderTest& subject, const Trace& inputs, bool with_stack) {
   return text_of({{"do", "time"},
                   {"subject", to_json(subject)},
                   {"stack", with_stack},
@@ -253,7 +253,8 @@ std::string supports_request(const std::string& profile) {
   return text_of({{"do", "supports"}, {"profile", profile}});
 }
 
-Result<Driven> read_driven(const Arrived& arrived, const Subject& subject, std::size_t ticks) {
+Result<Driven> read_driven(const Arrived& arrived, const ModuleUnderTest& subject,
+                           std::size_t ticks) {
   const std::size_t size = ticks * info_of(subject.module).out.size;
   return read_answer(arrived, [&](JsonReader& head) {
     Driven driven;

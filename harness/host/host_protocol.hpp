@@ -42,9 +42,9 @@
 namespace attest {
 
 // Of the judge: the heads of its requests.
-std::string drive_request(const Subject& subject, const Trace& trace);
+std::string drive_request(const ModuleUnderTest& subject, const Trace& trace);
 std::string fly_request(const FlightPlan& plan);
-std::string time_request(const Subject& subject, const Trace& inputs, bool with_stack);
+std::string time_request(const ModuleUnderTest& subject, const Trace& inputs, bool with_stack);
 std::string supports_request(const std::string& profile);
 
 // A message that has arrived, and the number of the request that it must answer.
@@ -63,7 +63,8 @@ struct Driven {
   std::vector<std::byte> outputs;  // of the subject's module (ModuleInfo::out)
   std::optional<PortFault> fault;
 };
-Result<Driven> read_driven(const Arrived& arrived, const Subject& subject, std::size_t ticks);
+Result<Driven> read_driven(const Arrived& arrived, const ModuleUnderTest& subject,
+                           std::size_t ticks);
 // The traces of the result have no `source`. `duration`: of the case.
 Result<Result<Flown>> read_flown(const Arrived& arrived, const FlightPlan& plan,
                                  Nanoseconds duration);

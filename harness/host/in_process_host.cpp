@@ -26,7 +26,7 @@ std::optional<PortFault> InProcessHost::held(std::optional<PortFault> fault,
   return held_to(declarations_, profile, std::move(fault));
 }
 
-std::optional<PortFault> InProcessHost::drive(const Subject& subject, Trace& trace) {
+std::optional<PortFault> InProcessHost::drive(const ModuleUnderTest& subject, Trace& trace) {
   const bool begins = subject.part.first_tick == 0;
   return ports_.run([&] {
     if (begins) parts_.reset();  // the judge may have stopped in the middle of a trace
@@ -35,7 +35,7 @@ std::optional<PortFault> InProcessHost::drive(const Subject& subject, Trace& tra
   });
 }
 
-std::optional<PortFault> InProcessHost::drive_part(const Subject& subject, Trace& part) {
+std::optional<PortFault> InProcessHost::drive_part(const ModuleUnderTest& subject, Trace& part) {
   const auto [first_tick, is_last] = subject.part;
   if (first_tick == 0) {
     auto unit = make_unit(driven(), subject);
@@ -67,7 +67,7 @@ Result<Flown> InProcessHost::fly(const FlightPlan& plan) {
   });
 }
 
-Result<StepTimes> InProcessHost::time_steps(const Subject& subject, const Trace& inputs,
+Result<StepTimes> InProcessHost::time_steps(const ModuleUnderTest& subject, const Trace& inputs,
                                             bool with_stack) {
   if (!clock_) clock_ = time_of_clock();
   StepTimes times;
@@ -89,7 +89,8 @@ Result<StepTimes> InProcessHost::time_steps(const Subject& subject, const Trace&
   return times;
 }
 
-Result<void> InProcessHost::measure_stack(const Subject& subject, Trace trace, StepTimes& times) {
+Result<void> InProcessHost::measure_stack(const ModuleUnderTest& subject, Trace trace,
+                                          StepTimes& times) {
   if (!stack_) {
     auto made = PaintedStack::make();
     if (!made) return tl::unexpected(made.error());

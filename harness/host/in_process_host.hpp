@@ -21,9 +21,9 @@ class InProcessHost final : public PortHost {
                 Course course = {}, const PortCalls* calls = nullptr);
 
   const Declarations& declarations() const override { return declarations_; }
-  std::optional<PortFault> drive(const Subject& subject, Trace& trace) override;
+  std::optional<PortFault> drive(const ModuleUnderTest& subject, Trace& trace) override;
   Result<Flown> fly(const FlightPlan& plan) override;
-  Result<StepTimes> time_steps(const Subject& subject, const Trace& inputs,
+  Result<StepTimes> time_steps(const ModuleUnderTest& subject, const Trace& inputs,
                                bool with_stack) override;
   bool supports(const std::string& profile) override;
 
@@ -32,8 +32,8 @@ class InProcessHost final : public PortHost {
   // PortBroke if a program broke the protocol in destroy().
   std::optional<PortFault> held(std::optional<PortFault> fault, const std::string& profile) const;
   Port& driven() { return noted_ ? *noted_ : *port_; }
-  std::optional<PortFault> drive_part(const Subject& subject, Trace& part);
-  Result<void> measure_stack(const Subject& subject, Trace trace, StepTimes& times);
+  std::optional<PortFault> drive_part(const ModuleUnderTest& subject, Trace& part);
+  Result<void> measure_stack(const ModuleUnderTest& subject, Trace trace, StepTimes& times);
 
   std::unique_ptr<Port> port_;
   const PortCalls* calls_;

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "harness/core/loop_timing.hpp"
 #include "harness/host/declarations.hpp"
 #include "harness/loop/flight.hpp"
 #include "harness/loop/open_loop.hpp"
-#include "harness/schedule/loop_timing.hpp"
 
 namespace attest {
 
@@ -44,15 +44,16 @@ class PortHost {
   virtual const Declarations& declarations() const = 0;
 
   // Same as drive() of open_loop.hpp, with a fresh instance. If `trace` is a part of a longer one
-  // (Subject::part), its first part makes the instance, and its other parts continue with it.
-  virtual std::optional<PortFault> drive(const Subject& subject, Trace& trace) = 0;
+  // (ModuleUnderTest::part), its first part makes the instance, and its other parts continue with
+  // it.
+  virtual std::optional<PortFault> drive(const ModuleUnderTest& subject, Trace& trace) = 0;
 
   // Same as fly() of flight.hpp, with fresh units. REQUIRES: the host was started with a course.
   virtual Result<Flown> fly(const FlightPlan& plan) = 0;
 
   // Same as drive(), but measures each step, discards the outputs, and ignores subject.instances.
   // Errors: no memory for the stack.
-  virtual Result<StepTimes> time_steps(const Subject& subject, const Trace& inputs,
+  virtual Result<StepTimes> time_steps(const ModuleUnderTest& subject, const Trace& inputs,
                                        bool with_stack) = 0;
 
   // The CPU time of the port's process so far, as the judge sees it. Empty without such a process.

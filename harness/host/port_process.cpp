@@ -19,7 +19,7 @@ using Kind = Received::Kind;
 
 // A flight that diverges does so before this time.
 Nanoseconds duration_of(const Case& the_case, const FlightPlan& plan) {
-  const Rate& rate = plan.configuration.rate.unit;
+  const Rate& rate = plan.configuration.rate.motor_unit;
   return the_case.duration.on(rate) + rate.tick(1);  // from_one_period_on: one more
 }
 
@@ -60,7 +60,7 @@ class PortProcess final : public PortHost {
 
   const Declarations& declarations() const override { return declarations_; }
 
-  std::optional<PortFault> drive(const Subject& subject, Trace& trace) override {
+  std::optional<PortFault> drive(const ModuleUnderTest& subject, Trace& trace) override {
     const ModuleInfo& module = info_of(subject.module);
     const std::vector<std::byte> inputs = module.all_inputs().copy(trace.samples);
     const auto driven =
@@ -89,7 +89,7 @@ class PortProcess final : public PortHost {
     return *std::move(flown);
   }
 
-  Result<StepTimes> time_steps(const Subject& subject, const Trace& inputs,
+  Result<StepTimes> time_steps(const ModuleUnderTest& subject, const Trace& inputs,
                                bool with_stack) override {
     const auto sent = info_of(subject.module).all_inputs().copy(inputs.samples);
     auto times =

@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "harness/host/manifest.hpp"
+#include "harness/host/recorded_outputs.hpp"
+#include "harness/host/table_file.hpp"
 #include "harness/port/profiles.hpp"
-#include "harness/recording/manifest.hpp"
-#include "harness/recording/recorded_outputs.hpp"
-#include "harness/recording/table_file.hpp"
 
 namespace attest {
 namespace {
@@ -48,7 +48,7 @@ class RecordedHost final : public PortHost {
 
   const Declarations& declarations() const override { return declarations_; }
 
-  std::optional<PortFault> drive(const Subject& subject, Trace& trace) override {
+  std::optional<PortFault> drive(const ModuleUnderTest& subject, Trace& trace) override {
     if (subject.instances != Instances::one) {
       return unanswered("a recorded port has one instance; this case needs two");
     }
@@ -71,7 +71,7 @@ class RecordedHost final : public PortHost {
     return none;
   }
 
-  Result<StepTimes> time_steps(const Subject&, const Trace&, bool) override {
+  Result<StepTimes> time_steps(const ModuleUnderTest&, const Trace&, bool) override {
     StepTimes none;
     none.fault = unanswered("a recorded port cannot be timed");
     return none;

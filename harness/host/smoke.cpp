@@ -68,7 +68,7 @@ class Smoke {
   // support the trace: then unsupported_ has the reason.
   std::string fault_with(Trace& trace, Instances instances = Instances::one) {
     if (auto ensured = ensure_host(host_, options_); !ensured) return ensured.error().to_string();
-    Subject subject = subject_;
+    ModuleUnderTest subject = subject_;
     subject.instances = instances;
     const auto fault = host_->drive(subject, trace);
     const bool is_unsupported = fault && fault->kind == PortFault::Kind::unsupported;
@@ -149,7 +149,7 @@ class Smoke {
   }
 
   const HostOptions& options_;
-  Subject subject_;
+  ModuleUnderTest subject_;
   std::string name_;  // "px4-v1.5.5", "rate unit of px4-v1.16.0"
   const std::function<void(const SmokeFinding&)>& report_;
   std::unique_ptr<PortHost> host_;

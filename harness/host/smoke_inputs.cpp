@@ -4,8 +4,8 @@
 #include <string_view>
 
 #include "harness/casefile/baseline.hpp"
+#include "harness/core/ticks.hpp"
 #include "harness/core/time.hpp"
-#include "harness/schedule/ticks.hpp"
 
 namespace attest {
 namespace {

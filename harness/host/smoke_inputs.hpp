@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/schedule/rate.hpp"
+#include "harness/core/rate.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace attest {

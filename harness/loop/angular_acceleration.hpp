@@ -11,8 +11,8 @@
 #include <optional>
 
 #include "harness/core/frames.hpp"
+#include "harness/core/rate.hpp"
 #include "harness/core/time.hpp"
-#include "harness/schedule/rate.hpp"
 
 namespace attest {
 

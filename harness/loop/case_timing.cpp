@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "harness/casefile/stimulus.hpp"
-#include "harness/schedule/ticks.hpp"
+#include "harness/core/ticks.hpp"
 
 namespace attest {
 namespace {
@@ -57,7 +57,7 @@ LoopTiming case_timing(const Case& the_case, const Rate& rate) {
 }
 
 FlightTiming flight_timing(const Case& the_case, const LoopRate& rate) {
-  FlightTiming timing = case_timing(the_case.of_module(the_case.module), rate.unit);
+  FlightTiming timing = case_timing(the_case.of_module(the_case.module), rate.motor_unit);
   if (rate.attitude_unit) {
     timing.attitude_unit =
         case_timing(the_case.of_module(Module::attitude_unit), *rate.attitude_unit);

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "harness/casefile/case.hpp"
-#include "harness/schedule/loop_rate.hpp"
-#include "harness/schedule/loop_timing.hpp"
+#include "harness/core/loop_rate.hpp"
+#include "harness/core/loop_timing.hpp"
 
 namespace attest {
 

@@ -106,22 +106,22 @@ ClosedLoop::UnitLoop::UnitLoop(const Case& the_case, const Rate& own, const Rate
 
 ClosedLoop::ClosedLoop(const Case& the_case, const LoopRate& rate, FlightTiming timing,
                        const Vehicle& vehicle, Plant& plant, FlightUnits units)
-    : plant_(the_case, rate.unit, vehicle, plant),
-      unit_(the_case.of_module(the_case.module), rate.unit, rate.unit, std::move(timing.unit),
-            vehicle, units.unit, plant_.state()),
+    : plant_(the_case, rate.motor_unit, vehicle, plant),
+      unit_(the_case.of_module(the_case.module), rate.motor_unit, rate.motor_unit,
+            std::move(timing.unit), vehicle, units.unit, plant_.state()),
       land_detector_(vehicle, the_case.flight->floor),
       event_queue_({}),
       battery_scales_(
-          line<float>(the_case.flight->battery.value_or(BatteryFlight{}).timing, rate.unit)),
-      saturations_(line<Saturation>(the_case.flight->saturation, rate.unit)),
+          line<float>(the_case.flight->battery.value_or(BatteryFlight{}).timing, rate.motor_unit)),
+      saturations_(line<Saturation>(the_case.flight->saturation, rate.motor_unit)),
       rates_setpoints_(Nanoseconds(0), most_between(timing.attitude_unit, &begins, &commanded) + 1),
       commands_(Nanoseconds(0), most_between(unit_.timing, &begins, &commanded) + 1) {
   if (the_case.attitude_loop) {
     attitude_unit_.emplace(the_case.of_module(Module::attitude_unit), *rate.attitude_unit,
-                           rate.unit, std::move(timing.attitude_unit), vehicle,
+                           rate.motor_unit, std::move(timing.attitude_unit), vehicle,
                            *units.attitude_unit, plant_.state());
   }
-  event_queue_ = events_of(the_case, rate.unit);
+  event_queue_ = events_of(the_case, rate.motor_unit);
 }
 
 EventQueue ClosedLoop::events_of(const Case& the_case, const Rate& rate) const {

@@ -28,15 +28,15 @@
 #include <vector>
 
 #include "harness/casefile/case.hpp"
+#include "harness/core/delay_line.hpp"
+#include "harness/core/event_queue.hpp"
+#include "harness/core/loop_rate.hpp"
+#include "harness/core/loop_timing.hpp"
 #include "harness/loop/estimator.hpp"
 #include "harness/loop/plant_task.hpp"
 #include "harness/loop/unit_task.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/port/port.hpp"
-#include "harness/schedule/delay_line.hpp"
-#include "harness/schedule/event_queue.hpp"
-#include "harness/schedule/loop_rate.hpp"
-#include "harness/schedule/loop_timing.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace attest {

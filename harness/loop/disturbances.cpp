@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <variant>
 
-#include "harness/schedule/ticks.hpp"
+#include "harness/core/ticks.hpp"
 
 namespace attest {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "controller/attest_unit.h"
 #include "harness/casefile/case.hpp"
+#include "harness/core/random.hpp"
 #include "harness/core/time.hpp"
 #include "harness/loop/angular_acceleration.hpp"
 #include "harness/plant/plant.hpp"
-#include "harness/schedule/random.hpp"
 
 namespace attest {
 

@@ -19,7 +19,7 @@ Result<void> check(const Case& the_case, const RunConfiguration& configuration,
                    const Vehicle& vehicle) {
   const Flight& flight = *the_case.flight;
   if (auto sane = check_rate(the_case, configuration.rate); !sane) return sane;
-  if (physics_of(the_case, configuration.rate.unit) < configuration.rate.unit) {
+  if (physics_of(the_case, configuration.rate.motor_unit) < configuration.rate.motor_unit) {
     return fail_at(the_case.file.string(),
                    fmt::format("physics at {} Hz is slower than the loop at {} Hz; raise "
                                "`physics_hz`, or leave it out",
@@ -75,7 +75,7 @@ Result<void> check_rate(const Case& the_case, const LoopRate& rate) {
   }
   if (!the_case.attitude_loop && rate.attitude_unit) {
     return fail_at(file, fmt::format("is a flight of the controller, which has one rate, as in {}",
-                                     rate.unit.to_string()));
+                                     rate.motor_unit.to_string()));
   }
   return {};
 }
@@ -108,8 +108,9 @@ Result<std::unique_ptr<Plant>> plant_for(const Case& the_case,
   if (auto sane = check(the_case, configuration, vehicle_model.vehicle()); !sane) {
     return tl::unexpected(sane.error());
   }
-  return vehicle_model.make_plant(configuration.plant_configuration->plant,
-                                  {physics_of(the_case, configuration.rate.unit), flight.floor});
+  return vehicle_model.make_plant(
+      configuration.plant_configuration->plant,
+      {physics_of(the_case, configuration.rate.motor_unit), flight.floor});
 }
 
 tl::expected<PortUnits, PortFault> units_for(const Case& the_case, Port& port, Port& other) {

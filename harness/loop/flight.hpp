@@ -5,12 +5,12 @@
 #include <optional>
 
 #include "harness/casefile/case.hpp"
+#include "harness/core/loop_timing.hpp"
 #include "harness/core/result.hpp"
 #include "harness/loop/closed_loop.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/port/port.hpp"
-#include "harness/schedule/loop_timing.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace attest {

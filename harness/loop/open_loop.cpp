@@ -67,7 +67,7 @@ std::optional<PortFault> to_its_end(Drive drive) {
 // The other instance, with its own inputs. Its outputs are not judged.
 class Other {
  public:
-  Other(Unit& unit, const Subject& subject, const Trace& judged)
+  Other(Unit& unit, const ModuleUnderTest& subject, const Trace& judged)
       : unit_(unit),
         defaults_(other_defaults(judged, subject.module, subject.profile)),
         trace_(other_inputs(judged, subject.module, subject.profile)),
@@ -149,7 +149,7 @@ PortFault makes_no_other() {
 }
 
 // Two instances of the subject. `overlaps`: those on two threads are added.
-std::optional<PortFault> drive_in_company(Port& port, const Subject& subject, Trace& trace,
+std::optional<PortFault> drive_in_company(Port& port, const ModuleUnderTest& subject, Trace& trace,
                                           std::size_t& overlaps) {
   auto first = make_unit(port, subject);
   if (!first) return first.error();
@@ -176,13 +176,13 @@ std::optional<PortFault> drive_in_company(Port& port, const Subject& subject, Tr
   return drive(*judged, trace, subject.module);
 }
 
-PortFault no_profile(const Subject& subject) {
+PortFault no_profile(const ModuleUnderTest& subject) {
   return {PortFault::Kind::profile, 0,
           fmt::format("the port does not support profile {}", subject.profile)};
 }
 
 // A port without any module of a profile does not support the profile.
-PortFault lacks_module(const Port& port, const Subject& subject) {
+PortFault lacks_module(const Port& port, const ModuleUnderTest& subject) {
   const ModuleInfo& info = info_of(subject.module);
   const ProfileInfo* const profile = find_profile(subject.profile);
   const bool has_another = profile && (profile->modules & port.modules()).any();
@@ -193,7 +193,7 @@ PortFault lacks_module(const Port& port, const Subject& subject) {
 
 // Whether the port makes a unit of another module of the subject's profile. Then it supports the
 // profile, but not the subject's module.
-bool makes_another(Port& port, const Subject& subject) {
+bool makes_another(Port& port, const ModuleUnderTest& subject) {
   const ProfileInfo* const profile = find_profile(subject.profile);
   if (!profile) return false;
   const auto all = modules();
@@ -204,7 +204,7 @@ bool makes_another(Port& port, const Subject& subject) {
   });
 }
 
-PortFault makes_none(Port& port, const Subject& subject) {
+PortFault makes_none(Port& port, const ModuleUnderTest& subject) {
   using enum PortFault::Kind;
   if (subject.module == Module::mixer) {
     return {
@@ -229,7 +229,7 @@ PortFault makes_one_profile(const std::string& profile, const std::string& other
 class Many {
  public:
   // REQUIRES: the port has the module.
-  Many(Port& port, const Subject& subject, const Trace& judged)
+  Many(Port& port, const ModuleUnderTest& subject, const Trace& judged)
       : port_(port),
         subject_(subject),
         trace_(other_inputs(judged, subject.module, subject.profile)) {}
@@ -265,7 +265,7 @@ class Many {
   }
 
   Port& port_;
-  const Subject& subject_;
+  const ModuleUnderTest& subject_;
   Trace trace_;
   std::size_t tick_ = 0;
   std::set<std::string> made_;  // profiles
@@ -278,12 +278,13 @@ bool are_many(Instances instances) {
 
 // How many of the many instances are made before the judged one. One of another profile is the very
 // first: a port may take the profile of its first instance for all of them.
-std::size_t count_before(const Subject& subject, const Trace& trace) {
+std::size_t count_before(const ModuleUnderTest& subject, const Trace& trace) {
   if (subject.instances == Instances::after_many) return trace.samples.size();
   return subject.instances == Instances::other_profiles ? 1 : 0;
 }
 
-std::optional<PortFault> drive_among_many(Port& port, const Subject& subject, Trace& trace) {
+std::optional<PortFault> drive_among_many(Port& port, const ModuleUnderTest& subject,
+                                          Trace& trace) {
   if (!contains(port.modules(), subject.module)) return lacks_module(port, subject);
   Many many(port, subject, trace);
   for (std::size_t left = count_before(subject, trace); left > 0; --left) {
@@ -315,15 +316,17 @@ std::optional<PortFault> PartDriver::drive(Trace& part, std::size_t first_tick) 
   return to_its_end(Drive(*unit_, driver_, part, first_tick));
 }
 
-Subject subject_of(const Case& the_case) {
-  Subject subject{the_case.profile, the_case.module, the_case.mixer, the_case.instances, {}, {}};
+ModuleUnderTest subject_of(const Case& the_case) {
+  ModuleUnderTest subject{
+      the_case.profile, the_case.module, the_case.mixer, the_case.instances, {}, {}};
   if (the_case.instances != Instances::other_profiles) return subject;
   std::ranges::remove_copy(the_case.profiles, std::back_inserter(subject.other_profiles),
                            the_case.profile);
   return subject;
 }
 
-tl::expected<std::unique_ptr<Unit>, PortFault> make_unit(Port& port, const Subject& subject) {
+tl::expected<std::unique_ptr<Unit>, PortFault> make_unit(Port& port,
+                                                         const ModuleUnderTest& subject) {
   if (!contains(port.modules(), subject.module)) {
     return tl::unexpected(lacks_module(port, subject));
   }
@@ -332,7 +335,7 @@ tl::expected<std::unique_ptr<Unit>, PortFault> make_unit(Port& port, const Subje
   return unit;
 }
 
-std::optional<PortFault> drive(Port& port, const Subject& subject, Trace& trace) {
+std::optional<PortFault> drive(Port& port, const ModuleUnderTest& subject, Trace& trace) {
   if (are_many(subject.instances)) return drive_among_many(port, subject, trace);
   if (subject.instances == Instances::one) {
     const auto unit = make_unit(port, subject);

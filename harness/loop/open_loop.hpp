@@ -26,7 +26,7 @@ struct Part {
 };
 
 // The module of a port that is stepped, and how it is created.
-struct Subject {
+struct ModuleUnderTest {
   std::string profile;
   Module module = Module::mc_att_control;
   std::string mixer = {};  // only for Module::mixer: "R: 4x 10000 10000 10000 0"
@@ -35,17 +35,18 @@ struct Subject {
   std::vector<std::string> other_profiles = {};  // whose turn it is in Instances::other_profiles
 };
 
-Subject subject_of(const Case& the_case);
+ModuleUnderTest subject_of(const Case& the_case);
 
 // Makes a unit of the subject's module, in its power-on state. The port must outlive the unit.
 // Faults, at tick 0: Kind::profile, Kind::unsupported.
-tl::expected<std::unique_ptr<Unit>, PortFault> make_unit(Port& port, const Subject& subject);
+tl::expected<std::unique_ptr<Unit>, PortFault> make_unit(Port& port,
+                                                         const ModuleUnderTest& subject);
 
 // Steps a fresh instance of the subject's module through the trace. `subject.instances` says which
 // other instances of the port exist before it or at the same time. On two threads, the steps of a
 // port that is one at a time alternate. Kind::unsupported: the port cannot make the second instance
 // while the first one exists. REQUIRES: the subject's part is the whole trace.
-std::optional<PortFault> drive(Port& port, const Subject& subject, Trace& trace);
+std::optional<PortFault> drive(Port& port, const ModuleUnderTest& subject, Trace& trace);
 
 // Steps one instance through the parts of a trace.
 class PartDriver {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "harness/schedule/fixed_priority.hpp"
-#include "harness/schedule/loop_timing.hpp"
+#include "harness/core/fixed_priority.hpp"
+#include "harness/core/loop_timing.hpp"
 
 namespace attest {
 

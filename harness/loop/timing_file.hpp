@@ -16,8 +16,8 @@
 
 #include "harness/casefile/case.hpp"
 #include "harness/core/file.hpp"
+#include "harness/core/loop_timing.hpp"
 #include "harness/core/result.hpp"
-#include "harness/schedule/loop_timing.hpp"
 
 namespace attest {
 

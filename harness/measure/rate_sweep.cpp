@@ -33,7 +33,8 @@ class Trial {
     if (result_.verdict != Verdict::pass || error_) return false;
     FlightPlan plan{configuration, flight_timing(case_, configuration.rate)};
     const Declarations& port = host_.declarations();
-    if (has_other_steps(port, case_, configuration.rate.unit, plan.timing, result_)) return false;
+    if (has_other_steps(port, case_, configuration.rate.motor_unit, plan.timing, result_))
+      return false;
     if (marks_declined(port, result_)) return false;
     for (LoopTick& tick : plan.timing.unit) *tick.commanded += delay;
     plan.from_one_period_on = has_fixed_step(port, case_);
@@ -43,7 +44,7 @@ class Trial {
     } else if (flown->fault) {
       judge(*flown->fault, result_);
     } else {
-      return note(configuration.rate.unit, delay, *flown);
+      return note(configuration.rate.motor_unit, delay, *flown);
     }
     return false;
   }

@@ -12,7 +12,7 @@ Result<SimulatedFlight> simulate_flight(const Case& the_case, FlightPlan plan, P
   SimulatedFlight flight{result_for(the_case, plan.configuration), {}};
   VectorResult& result = flight.result;
   const Declarations& port = host.declarations();
-  if (has_other_steps(port, the_case, plan.configuration.rate.unit, plan.timing, result))
+  if (has_other_steps(port, the_case, plan.configuration.rate.motor_unit, plan.timing, result))
     return flight;
   if (marks_declined(port, result)) return flight;
   plan.from_one_period_on = has_fixed_step(port, the_case);

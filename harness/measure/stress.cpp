@@ -62,7 +62,7 @@ double StressResult::per_million(std::uint64_t count) const {
 }
 
 const Rate& StressResult::unit_rate() const {
-  return module == Module::attitude_unit ? *result.rate.attitude_unit : result.rate.unit;
+  return module == Module::attitude_unit ? *result.rate.attitude_unit : result.rate.motor_unit;
 }
 
 Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
@@ -80,7 +80,7 @@ Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
   }
   progress({{}, true});
   const LoopRate& rate = task.configuration.rate;
-  const Histogram idle = idle_latency(rate.unit, task.idle_duration, task.live, stop);
+  const Histogram idle = idle_latency(rate.motor_unit, task.idle_duration, task.live, stop);
   auto flight =
       fly_live(task.the_case, task.configuration, *task.vehicle_model, units->for_flight(),
                task.live, checked_ticks, stop, [&](const LiveProgress& live) {
@@ -88,7 +88,7 @@ Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
                });
   if (!flight) return tl::unexpected(flight.error());
   const RealtimeBudget& budget = task.the_case.flight->realtime;
-  summarise(*flight, flight->unit, rate.unit, budget, measured.stress);
+  summarise(*flight, flight->unit, rate.motor_unit, budget, measured.stress);
   measured.stress.idle = percentiles_of(idle);
   if (const auto& attitude_unit = flight->attitude_unit) {
     StressResult& stress = measured.attitude_unit.emplace();

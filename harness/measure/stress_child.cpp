@@ -74,7 +74,7 @@ std::optional<StressResults> declined(const StressTask& task) {
   stress.result = result_for(task.the_case, task.configuration);
   const auto& step = task.port.fixed_step;
   const LoopRate& rate = task.configuration.rate;
-  if (step && (*step != rate.unit || *step != rate.attitude_unit.value_or(rate.unit))) {
+  if (step && (*step != rate.motor_unit || *step != rate.attitude_unit.value_or(rate.motor_unit))) {
     stress.result.verdict = Verdict::unsupported;
     stress.result.reason = fmt::format("the port has a fixed step of {} Hz", step->to_string());
     return StressResults{stress};

@@ -109,7 +109,7 @@ bool may_be_short(const StressTask& task, const LiveFlight& flight, bool was_ask
 }  // namespace
 
 Nanoseconds longest_of(const StressTask& task) {
-  const Nanoseconds duration = task.the_case.duration.on(task.configuration.rate.unit);
+  const Nanoseconds duration = task.the_case.duration.on(task.configuration.rate.motor_unit);
   return duration + 2 * (report_every + task.timeout);
 }
 
@@ -147,7 +147,7 @@ void send_measured(const StressMeasurement& measured, MessageSocket& parent) {
 StressMeasurement measurement_from(const StressTask& task, bool of_program, bool was_asked_to_stop,
                                    JsonReader& head, BlobReader& blobs) {
   const LoopRate& rate = task.configuration.rate;
-  std::vector<Rate> rates{rate.unit};
+  std::vector<Rate> rates{rate.motor_unit};
   if (task.the_case.attitude_loop) rates.push_back(*rate.attitude_unit);
   StressMeasurement measured;
   const json& heads = head.list("units");

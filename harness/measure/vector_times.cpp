@@ -25,7 +25,7 @@ class Stopwatches {
     }
     VectorTimes times{result_for(the_case, configuration), {}, {}, the_case.module};
     if (marks_declined(host_->declarations(), times.result)) return times;
-    const Trace inputs = stimulate(the_case, configuration.rate.unit);
+    const Trace inputs = stimulate(the_case, configuration.rate.motor_unit);
     for (int repeat = 0; repeat < options_.repeats; ++repeat) {
       const bool with_stack = options_.stack && repeat + 1 == options_.repeats;
       auto timed = timed_steps(subject_of(the_case), inputs, with_stack);
@@ -46,7 +46,8 @@ class Stopwatches {
 
  private:
   // With a fault of kind protocol if the judge measures other times than the port's process.
-  Result<StepTimes> timed_steps(const Subject& subject, const Trace& inputs, bool with_stack) {
+  Result<StepTimes> timed_steps(const ModuleUnderTest& subject, const Trace& inputs,
+                                bool with_stack) {
     const TimedRequest request(*host_);
     auto timed = host_->time_steps(subject, inputs, with_stack);
     // A program does not share the process that reads the clock.
@@ -152,11 +153,11 @@ Result<void> write_slowest(const CorpusTimes& times, const std::vector<SelectedC
   const VectorTimes* slowest = times.with_slowest_step();
   const Case* the_case = slowest ? find_case(cases, slowest->result.case_id()) : nullptr;
   if (!the_case) return fail("no vector was timed, so there is no slowest step to write");
-  Trace trace = stimulate(*the_case, slowest->result.rate.unit);
+  Trace trace = stimulate(*the_case, slowest->result.rate.motor_unit);
   trace.keep_first(slowest->slowest_tick() + 1);
   const auto started = start_host(host);
   if (!started) return tl::unexpected(started.error());
-  Subject subject = subject_of(*the_case);
+  ModuleUnderTest subject = subject_of(*the_case);
   subject.instances = Instances::one;  // as it was timed
   if (const auto fault = (*started)->drive(subject, trace)) return fail(fault->what);
   trace.present = channels_of(the_case->module);

@@ -20,10 +20,10 @@
 #include <string_view>
 
 #include "harness/core/frames.hpp"
+#include "harness/core/rate.hpp"
 #include "harness/core/result.hpp"
 #include "harness/core/time.hpp"
 #include "harness/plant/vehicle.hpp"
-#include "harness/schedule/rate.hpp"
 
 namespace attest {
 

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "controller/actuation/mixer.hpp"
-#include "controller/reference/parameters.hpp"
+#include "controller/mc_att_control/parameters.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/suggestion.hpp"
 #include "harness/core/toml.hpp"
@@ -152,7 +152,7 @@ void check_hover(const TomlTable& root, const Vehicle& vehicle) {
 
 void check_parameter(const TomlTable& parameters, const std::string& name, double value) {
   std::vector<std::string> known;
-  for (const auto& info : reference::parameter_table()) known.emplace_back(info.name);
+  for (const auto& info : mc_att_control::parameter_table()) known.emplace_back(info.name);
   if (std::find(known.begin(), known.end(), name) == known.end()) {
     parameters.error(name, fmt::format("unknown parameter `{}`{}; `attest list --parameters` shows "
                                        "them all",

@@ -9,7 +9,7 @@
 #include "controller/actuation/unit_table.hpp"
 #include "controller/cascade/profile.hpp"
 #include "controller/faults/faulty_controller.hpp"
-#include "controller/reference/profile.hpp"
+#include "controller/mc_att_control/profile.hpp"
 #include "harness/core/suggestion.hpp"
 
 namespace attest {
@@ -89,7 +89,7 @@ class FaultPort final : public Port {
                                     const std::string& definition) override {
     switch (module) {
       case Module::mc_att_control:
-        return make<FaultyControllerUnit>(reference::profile_from_name(profile));
+        return make<FaultyControllerUnit>(mc_att_control::profile_from_name(profile));
       case Module::attitude_unit:
         return make<FaultyAttitudeUnit>(cascade::profile_from_name(profile));
       case Module::rate_unit:

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "harness/core/rate.hpp"
 #include "harness/core/result.hpp"
-#include "harness/schedule/rate.hpp"
 #include "harness/trace/module.hpp"
 
 namespace attest {

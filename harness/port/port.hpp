@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "controller/attest_unit.h"
+#include "harness/core/rate.hpp"
 #include "harness/core/result.hpp"
-#include "harness/schedule/rate.hpp"
 #include "harness/trace/module.hpp"
 
 namespace attest {

@@ -7,15 +7,15 @@
 #include "controller/actuation/battery_status.hpp"
 #include "controller/actuation/unit_table.hpp"
 #include "controller/cascade/parameters.hpp"
-#include "controller/reference/parameters.hpp"
+#include "controller/mc_att_control/parameters.hpp"
 
 namespace attest {
 namespace {
 
 std::vector<ProfileInfo> make_profiles() {
   std::vector<ProfileInfo> all;
-  for (const reference::Profile profile : reference::every_profile) {
-    const std::string_view name = reference::name_of(profile);
+  for (const mc_att_control::Profile profile : mc_att_control::every_profile) {
+    const std::string_view name = mc_att_control::name_of(profile);
     ModuleSet modules = only(Module::mc_att_control);
     if (actuation::is_profile(name.data())) {
       modules |= only(Module::mixer) | only(Module::battery_status);
@@ -94,7 +94,8 @@ std::vector<Parameter> parameters_of(Module module, const ProfileInfo& profile) 
   if (!contains(profile.modules, module)) return {};
   switch (module) {
     case Module::mc_att_control:
-      return rows_of(reference::parameter_table(), *reference::profile_from_name(profile.name));
+      return rows_of(mc_att_control::parameter_table(),
+                     *mc_att_control::profile_from_name(profile.name));
     case Module::mixer:
       return {};
     case Module::battery_status:

@@ -5,9 +5,9 @@
 #include <functional>
 #include <optional>
 
+#include "harness/core/rate.hpp"
 #include "harness/core/time.hpp"
 #include "harness/realtime/live_flight.hpp"
-#include "harness/schedule/rate.hpp"
 
 namespace attest {
 

@@ -34,8 +34,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "harness/core/rate.hpp"
 #include "harness/realtime/live_tick.hpp"
-#include "harness/schedule/rate.hpp"
 
 namespace attest {
 

@@ -79,7 +79,7 @@ struct UnitSetting {
 struct FlyingUnit {
   FlyingUnit(Module module, Unit& port, const UnitSetting& setting, Links& links)
       : scripted(setting.scripted.of_module(module)),
-        task(scripted, setting.rate.unit, setting.vehicle, port,
+        task(scripted, setting.rate.motor_unit, setting.vehicle, port,
              Estimate{Nanoseconds(0), control_state_of(setting.start)}),
         clock(setting.clock),
         live(scripted, setting.rate, task, clock, links, setting.samples) {}
@@ -97,7 +97,7 @@ struct Flyers {
   // REQUIRES: same as fly_live(); `scripted` is bound to the vehicle. All outlive this.
   Flyers(const Case& scripted, const LoopRate& rate, const Vehicle& vehicle, Plant& flown,
          FlightUnits units, const LiveOptions& options, std::size_t samples)
-      : plant_task(scripted, rate.unit, vehicle, flown),
+      : plant_task(scripted, rate.motor_unit, vehicle, flown),
         origin(Pacer::now_monotonic() + settle_in),
         setting{scripted, rate, vehicle, plant_task.state(), {origin, options.wait}, samples},
         unit(scripted.module, units.unit, setting, links),
@@ -106,8 +106,8 @@ struct Flyers {
                                                          *units.attitude_unit, setting, links)
                           : nullptr),
         plant_clock(origin, Wait{}),
-        plant(plant_task, plan_of(scripted, rate.unit, vehicle, unit.live.deadlines()), plant_clock,
-              links) {
+        plant(plant_task, plan_of(scripted, rate.motor_unit, vehicle, unit.live.deadlines()),
+              plant_clock, links) {
     links.flying = attitude_unit ? 2 : 1;
   }
 

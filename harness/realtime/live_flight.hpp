@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/casefile/case.hpp"
+#include "harness/core/loop_timing.hpp"
 #include "harness/core/result.hpp"
 #include "harness/loop/closed_loop.hpp"
 #include "harness/plant/plant.hpp"
@@ -17,7 +18,6 @@
 #include "harness/realtime/live_unit.hpp"
 #include "harness/realtime/pacer.hpp"
 #include "harness/realtime/privileges.hpp"
-#include "harness/schedule/loop_timing.hpp"
 
 namespace attest {
 

@@ -18,12 +18,12 @@ DelayLine<T> line(const TaskTiming& timing, const Rate& rate) {
 bool is_attitude(const UnitTask& task) { return task.module() == Module::attitude_unit; }
 
 const Rate& own_rate(const UnitTask& task, const LoopRate& rate) {
-  return is_attitude(task) ? *rate.attitude_unit : rate.unit;
+  return is_attitude(task) ? *rate.attitude_unit : rate.motor_unit;
 }
 
 DelayLine<LiveRatesSetpoint> rates_setpoints(const Case& the_case, const LoopRate& rate) {
   if (!the_case.attitude_loop) return {Nanoseconds(0), 0};
-  const Nanoseconds delay = the_case.attitude_loop->delay.on(rate.unit);
+  const Nanoseconds delay = the_case.attitude_loop->delay.on(rate.motor_unit);
   // After a late tick of the attitude unit the next tick follows at once. So the attitude unit may
   // make more setpoints within the delay than the delay has periods.
   return {delay, static_cast<std::size_t>(2 * rate.attitude_unit->ticks_in(delay)) + 2};
@@ -41,11 +41,12 @@ LiveUnit::LiveUnit(const Case& the_case, const LoopRate& rate, UnitTask& task, C
       rate_(own_rate(task, rate)),
       on_estimate_(the_case.unit.on_estimate),
       deadlines_(tick_count(the_case.duration, rate_)),
-      estimator_(the_case, rate_, rate.unit),
-      saturation_times_(task_times(the_case.flight->saturation, timeline_of(the_case, rate.unit))),
-      saturations_(line<Saturation>(the_case.flight->saturation, rate.unit)),
+      estimator_(the_case, rate_, rate.motor_unit),
+      saturation_times_(
+          task_times(the_case.flight->saturation, timeline_of(the_case, rate.motor_unit))),
+      saturations_(line<Saturation>(the_case.flight->saturation, rate.motor_unit)),
       battery_scales_(
-          line<float>(the_case.flight->battery.value_or(BatteryFlight{}).timing, rate.unit)),
+          line<float>(the_case.flight->battery.value_or(BatteryFlight{}).timing, rate.motor_unit)),
       rates_setpoints_(rates_setpoints(the_case, rate)) {
   const auto most = static_cast<std::size_t>(deadlines_);
   samples_max_ = std::min(samples, most);

@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "harness/core/response_time.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/stress_text.hpp"
 #include "harness/report/text.hpp"
-#include "harness/schedule/response_time.hpp"
 
 namespace attest {
 namespace {

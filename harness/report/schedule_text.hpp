@@ -4,7 +4,7 @@
 #include <string>
 
 #include "harness/casefile/task_set.hpp"
-#include "harness/schedule/loop_timing.hpp"
+#include "harness/core/loop_timing.hpp"
 #include "harness/verify/verdict.hpp"
 
 namespace attest {

@@ -17,8 +17,8 @@
 #include "harness/loop/case_timing.hpp"
 #include "harness/measure/simulate.hpp"
 #include "harness/port/builtin.hpp"
+#include "harness/process/pool.hpp"
 #include "harness/verify/fixed_step.hpp"
-#include "harness/workers/pool.hpp"
 
 namespace attest {
 namespace {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "harness/compare/metric.hpp"
+#include "harness/core/loop_rate.hpp"
 #include "harness/core/result.hpp"
 #include "harness/core/toml_document.hpp"
-#include "harness/schedule/loop_rate.hpp"
 #include "harness/sweep/design.hpp"
 #include "harness/sweep/distribution.hpp"
 

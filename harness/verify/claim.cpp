@@ -34,7 +34,7 @@ struct Group {
 using Groups = std::map<std::string, Group>;
 
 bool has_step(const LoopRate& rate, const Rate& step) {
-  return rate.unit == step && rate.attitude_unit.value_or(step) == step;
+  return rate.motor_unit == step && rate.attitude_unit.value_or(step) == step;
 }
 
 // Whether a fixed step of the port excludes the rate of the result. Such results do not count as

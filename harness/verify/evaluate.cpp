@@ -21,9 +21,9 @@ namespace {
 
 // Drives a fresh unit through `answered`, which has the inputs of the vector, and judges its
 // outputs. After a fault, `answered` keeps only the ticks before it.
-void run_and_judge(Trace& answered, const Trace& want, const Subject& subject, PortHost& host,
-                   const Tolerances& tolerances, const std::filesystem::path& saved_traces,
-                   VectorResult& result) {
+void run_and_judge(Trace& answered, const Trace& want, const ModuleUnderTest& subject,
+                   PortHost& host, const Tolerances& tolerances,
+                   const std::filesystem::path& saved_traces, VectorResult& result) {
   if (marks_declined(host.declarations(), result)) return;
   const auto fault = host.drive(subject, answered);
   if (host.declarations().is_recorded && !fault &&
@@ -51,7 +51,8 @@ void run_and_judge(Trace& answered, const Trace& want, const Subject& subject, P
 // Runs a case that is compared at the exact level only at another level: its outputs are not
 // judged, but the port must make all steps. It may refuse a parameter, because values such as NaN
 // need not be allowed. The answers of a recorded port are outputs only.
-void run_uncompared(Trace inputs, const Subject& subject, PortHost& host, VectorResult& result) {
+void run_uncompared(Trace inputs, const ModuleUnderTest& subject, PortHost& host,
+                    VectorResult& result) {
   if (marks_declined(host.declarations(), result)) return;
   if (!host.declarations().is_recorded) {
     const auto fault = host.drive(subject, inputs);
@@ -93,7 +94,7 @@ tl::unexpected<Error> other_bits(const Case& the_case, const Rate& rate) {
 }
 
 // Leaves out the parameters that the subject does not have, or whose value it cannot have.
-std::vector<ParameterChange> accepted_by(const Subject& subject,
+std::vector<ParameterChange> accepted_by(const ModuleUnderTest& subject,
                                          std::vector<ParameterChange> parameters) {
   std::erase_if(parameters, [&](const ParameterChange& parameter) {
     return !check_parameter(subject, parameter).has_value();
@@ -168,7 +169,7 @@ Tolerances tolerances_of_trace(const Tolerances& tolerances, Module module,
 
 }  // namespace
 
-VectorResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHost& host,
+VectorResult evaluate_trace(const Trace& recorded, const ModuleUnderTest& subject, PortHost& host,
                             const Tolerances& tolerances, Trace* got) {
   const Stopwatch stopwatch;
   VectorResult result = result_for(recorded.source, subject.profile);
@@ -203,9 +204,9 @@ Result<std::size_t> count_ticks(TraceParts& recorded, std::size_t most_ticks, Mo
 
 // Gives the parts to one instance, and compares them. After a fault, the rest of the trace is read
 // for its errors only.
-Result<Comparison> drive_parts(TraceParts& recorded, std::size_t most_ticks, Subject subject,
-                               PortHost& host, const Tolerances& tolerances,
-                               std::optional<PortFault>& fault) {
+Result<Comparison> drive_parts(TraceParts& recorded, std::size_t most_ticks,
+                               ModuleUnderTest subject, PortHost& host,
+                               const Tolerances& tolerances, std::optional<PortFault>& fault) {
   TickComparer comparer(recorded.present(), recorded.present(), tolerances);
   Trace answered;
   const auto ticks =
@@ -224,8 +225,9 @@ Result<Comparison> drive_parts(TraceParts& recorded, std::size_t most_ticks, Sub
 
 }  // namespace
 
-Result<VectorResult> evaluate_parts(TraceParts& recorded, const Subject& subject, PortHost& host,
-                                    const Tolerances& tolerances, std::size_t most_ticks) {
+Result<VectorResult> evaluate_parts(TraceParts& recorded, const ModuleUnderTest& subject,
+                                    PortHost& host, const Tolerances& tolerances,
+                                    std::size_t most_ticks) {
   const Declarations& port = host.declarations();
   if (tolerances.level() == Level::events || port.is_recorded) {
     Trace whole;

@@ -67,15 +67,15 @@ std::string how_it_ended(const Flown& flown);
 // Gives the recorded inputs to a fresh instance of the subject's module, and compares the outputs
 // with the recorded ones. `got`, unless null, becomes the trace with the port's outputs, up to the
 // fault if there was one. If a fixed step of the port excludes the trace, `got` does not change.
-VectorResult evaluate_trace(const Trace& recorded, const Subject& subject, PortHost& host,
+VectorResult evaluate_trace(const Trace& recorded, const ModuleUnderTest& subject, PortHost& host,
                             const Tolerances& tolerances, Trace* got = nullptr);
 
 // The same, in memory that does not grow with the length of the trace: at most `most_ticks` are in
 // memory. But the events level, which looks ahead, and a recorded port need the whole trace. For a
 // port with a fixed step or in fixed point, the trace is read twice. Errors: those of TraceParts.
 inline constexpr std::size_t ticks_at_once = 2048;
-Result<VectorResult> evaluate_parts(TraceParts& recorded, const Subject& subject, PortHost& host,
-                                    const Tolerances& tolerances,
+Result<VectorResult> evaluate_parts(TraceParts& recorded, const ModuleUnderTest& subject,
+                                    PortHost& host, const Tolerances& tolerances,
                                     std::size_t most_ticks = ticks_at_once);
 
 }  // namespace attest

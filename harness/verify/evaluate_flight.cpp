@@ -75,7 +75,7 @@ void judge_metrics(const Case& the_case, const Flown& flown, const ReferenceFlig
                              metric.measure,
                              measured(metric, flown),
                              expected,
-                             tolerance_of(metric.measure, expected, result.rate.unit),
+                             tolerance_of(metric.measure, expected, result.rate.motor_unit),
                              metric.min,
                              metric.max};
     // With `versus` the metric is a ratio without a unit, so only a relative tolerance applies.
@@ -169,7 +169,7 @@ namespace {
 void save_flight(const std::filesystem::path& folder, const Trace& flown,
                  const Tolerances& tolerances, VectorResult& result) {
   if (!saves_traces(folder, result) || flown.samples.empty()) return;
-  const Subject subject{result.profile, module_of(flown.present)};
+  const ModuleUnderTest subject{result.profile, module_of(flown.present)};
   const auto want = reference_outputs(subject, flown);
   if (!want) return;
   save_traces(folder, subject, {flown, *want, tolerances}, result);
@@ -304,7 +304,8 @@ Result<VectorResult> evaluate_flight(const Case& the_case, const RunConfiguratio
     return checked ? std::move(result) : tl::unexpected(checked.error());
   }
   VectorResult result = result_for(the_case, configuration);
-  if (has_other_steps(host.declarations(), the_case, configuration.rate.unit, plan.timing, result))
+  if (has_other_steps(host.declarations(), the_case, configuration.rate.motor_unit, plan.timing,
+                      result))
     return result;
   return evaluate_from_one_period_on(course, plan, *reference, host, saved_traces);
 }
@@ -315,7 +316,7 @@ Result<VectorResult> evaluate_timed_flight(const Case& the_case,
                                            const FlightTiming& timing, PortHost& host,
                                            const std::filesystem::path& saved_traces) {
   VectorResult result = result_for(the_case, configuration);
-  if (has_other_steps(host.declarations(), the_case, configuration.rate.unit, timing, result))
+  if (has_other_steps(host.declarations(), the_case, configuration.rate.motor_unit, timing, result))
     return result;
   const FlightPlan plan{configuration, timing, has_fixed_step(host.declarations(), the_case)};
   Case relaxed = plan.from_one_period_on ? the_case.from_one_period_on() : the_case;

@@ -28,7 +28,7 @@ bool has_memory(Module module, const TopicAgreement& topic) {
 
 using Parameters = std::vector<ParameterChange>;
 
-Parameters without_those_of_others(const Subject& subject, Parameters parameters) {
+Parameters without_those_of_others(const ModuleUnderTest& subject, Parameters parameters) {
   const auto own = parameter_names(subject.module, subject.profile);
   std::erase_if(parameters, [&](const ParameterChange& change) {
     return std::find(own.begin(), own.end(), change.name) == own.end();
@@ -69,7 +69,7 @@ std::size_t for_each_part_of(LoggedTicks& ticks, std::size_t most_ticks, Take ta
 // An instance of a port that gets the inputs of a log.
 class Replayed {
  public:
-  Replayed(PortHost& host, Subject subject, const Parameters& parameters)
+  Replayed(PortHost& host, ModuleUnderTest subject, const Parameters& parameters)
       : host_(host), subject_(std::move(subject)), parameters_(parameters) {}
 
   // The inputs of a part, without outputs.
@@ -88,7 +88,7 @@ class Replayed {
 
  private:
   PortHost& host_;
-  Subject subject_;
+  ModuleUnderTest subject_;
   const Parameters& parameters_;
 };
 
@@ -209,8 +209,8 @@ void judge_topics(const std::vector<TopicAgreement>& topics, const LogLimits& li
 // Gives the log to the reference and to a port.
 class LogJudge {
  public:
-  LogJudge(const LoggedUnit& log, Subject subject, const LogLimits& limits, const Parameters& given,
-           std::size_t most_ticks)
+  LogJudge(const LoggedUnit& log, ModuleUnderTest subject, const LogLimits& limits,
+           const Parameters& given, std::size_t most_ticks)
       : log_(log),
         ticks_(ticks_of(log)),
         subject_(std::move(subject)),
@@ -269,7 +269,7 @@ class LogJudge {
 
   const LoggedUnit& log_;
   std::shared_ptr<LoggedTicks> ticks_;
-  Subject subject_;
+  ModuleUnderTest subject_;
   const LogLimits& limits_;
   std::size_t most_ticks_;
   Parameters of_port_, as_flown_;

@@ -12,8 +12,8 @@
 #pragma once
 
 #include "harness/casefile/case.hpp"
+#include "harness/core/loop_timing.hpp"
 #include "harness/host/declarations.hpp"
-#include "harness/schedule/loop_timing.hpp"
 #include "harness/verify/verdict.hpp"
 
 namespace attest {

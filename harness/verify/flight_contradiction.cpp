@@ -9,8 +9,8 @@
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/core/agreement.hpp"
+#include "harness/core/delay_line.hpp"
 #include "harness/loop/unit_task.hpp"
-#include "harness/schedule/delay_line.hpp"
 #include "harness/trace/channels.hpp"
 
 namespace attest {
@@ -108,7 +108,7 @@ bool is_whole(const Trace& trace, const LoopTiming& timing, bool ended_early) {
 
 std::string flight_contradiction(const Course& course, const FlightPlan& plan, const Flown& flown) {
   const Case scripted = bound_to_vehicle(*course.the_case, course.vehicle_model->vehicle());
-  const Rate& rate = plan.configuration.rate.unit;
+  const Rate& rate = plan.configuration.rate.motor_unit;
   const bool ended_early = flown.fault || flown.divergence;
   static const Trace none;
   const Trace& attitude = flown.attitude_trace ? *flown.attitude_trace : none;

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "harness/compare/misrecording.hpp"
-#include "harness/recording/recorded_outputs.hpp"
+#include "harness/host/recorded_outputs.hpp"
 #include "harness/trace/output_topics.hpp"
 
 namespace attest {

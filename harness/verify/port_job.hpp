@@ -5,7 +5,7 @@
 
 #include "harness/host/port_launcher.hpp"
 #include "harness/host/port_process.hpp"
-#include "harness/workers/job.hpp"
+#include "harness/process/job.hpp"
 
 namespace attest {
 

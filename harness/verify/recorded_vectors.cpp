@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "harness/recording/manifest.hpp"
-#include "harness/recording/recorded_outputs.hpp"
+#include "harness/host/manifest.hpp"
+#include "harness/host/recorded_outputs.hpp"
 #include "harness/trace/provenance.hpp"
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/fixed_step.hpp"
@@ -19,7 +19,7 @@ bool can_run(const Declarations& port, const Case& the_case,
              const RunConfiguration& configuration) {
   VectorResult ignored;
   return !the_case.flight && the_case.instances == Instances::one &&
-         !has_other_steps(port, the_case, configuration.rate.unit, ignored);
+         !has_other_steps(port, the_case, configuration.rate.motor_unit, ignored);
 }
 
 std::string id_of(const Case& the_case, const RunConfiguration& configuration) {
@@ -69,7 +69,7 @@ Result<std::size_t> write_recorded_vectors(const std::filesystem::path& folder, 
   for (const auto& [the_case, configurations] : cases) {
     for (const RunConfiguration& configuration : configurations) {
       if (!can_run(port, the_case, configuration)) continue;
-      const Trace inputs = inputs_for(port, the_case, configuration.rate.unit);
+      const Trace inputs = inputs_for(port, the_case, configuration.rate.motor_unit);
       const std::string id = id_of(the_case, configuration);
       if (auto written = write_vector(folder, format, the_case, id, inputs); !written) {
         return tl::unexpected(written.error());
@@ -105,7 +105,8 @@ Result<RecordedVectors> check_recorded_vectors(const std::filesystem::path& fold
       const auto file = find_output_file(folder, id);
       if (!file) return tl::unexpected(file.error());
       if (known == manifest->vectors.end() || !*file) continue;
-      if (known->second != sha256_of_inputs(inputs_for(port, the_case, configuration.rate.unit))) {
+      if (known->second !=
+          sha256_of_inputs(inputs_for(port, the_case, configuration.rate.motor_unit))) {
         return fail_at((folder / manifest_name).string(),
                        fmt::format("the inputs of {} are not those of this suite: another version "
                                    "of it wrote them. Write them again with `attest vectors`, and "

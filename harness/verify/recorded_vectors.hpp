@@ -9,7 +9,7 @@
 #include "harness/casefile/select.hpp"
 #include "harness/core/result.hpp"
 #include "harness/host/declarations.hpp"
-#include "harness/recording/table_file.hpp"
+#include "harness/host/table_file.hpp"
 
 namespace attest {
 

@@ -27,8 +27,8 @@ Result<void> make_below(std::filesystem::path folder, const std::filesystem::pat
   return {};
 }
 
-Result<void> write_traces(const TraceFiles& files, const std::string& label, const Subject& subject,
-                          const JudgedTraces& traces) {
+Result<void> write_traces(const TraceFiles& files, const std::string& label,
+                          const ModuleUnderTest& subject, const JudgedTraces& traces) {
   const std::filesystem::path folder = files.want.parent_path();
   std::map<std::string, std::string> mixers;
   if (subject.module == Module::mixer) {
@@ -70,7 +70,7 @@ TraceFiles trace_files(const std::filesystem::path& folder, const VectorResult& 
   return {file(".got.csv"), file(".want.csv"), file(".tolerance.csv")};
 }
 
-void save_traces(const std::filesystem::path& folder, const Subject& subject,
+void save_traces(const std::filesystem::path& folder, const ModuleUnderTest& subject,
                  const JudgedTraces& traces, VectorResult& result) {
   auto saved = make_below(folder, result.case_id());
   if (saved) {

@@ -35,7 +35,7 @@ TraceFiles trace_files(const std::filesystem::path& folder, const VectorResult& 
 // tick, .want.csv is the only trace. The level events has no tolerances, so no .tolerance.csv. If a
 // file cannot be written, the result's reason says so. Several processes may save vectors of the
 // same case at the same time. REQUIRES: saves_traces(); the folder exists.
-void save_traces(const std::filesystem::path& folder, const Subject& subject,
+void save_traces(const std::filesystem::path& folder, const ModuleUnderTest& subject,
                  const JudgedTraces& traces, VectorResult& result);
 
 }  // namespace attest

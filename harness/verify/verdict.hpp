@@ -9,7 +9,7 @@
 #include "harness/casefile/run_configuration.hpp"
 #include "harness/compare/compare.hpp"
 #include "harness/compare/metric.hpp"
-#include "harness/schedule/rate.hpp"
+#include "harness/core/rate.hpp"
 
 namespace attest {
 
@@ -23,7 +23,7 @@ enum class Verdict {
   non_finite,   // NaN or Inf where the expected output is a number
   unsupported,  // excluded by a declaration of the port, or by ATTEST_UNSUPPORTED
   skip,         // not judged, for the given reason (profile not supported, exact-level case)
-  xfail,        // failed as expected (expected.hpp)
+  xfail,        // failed as expected (expected_failures.hpp)
   xpass,        // passed although expected to fail
 };
 

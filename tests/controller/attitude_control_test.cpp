@@ -1,4 +1,4 @@
-#include "controller/reference/attitude_control.hpp"
+#include "controller/mc_att_control/attitude_control.hpp"
 
 #include <cmath>
 
@@ -7,7 +7,7 @@
 
 #include "tests/controller/generators.hpp"
 
-namespace attest::reference {
+namespace attest::mc_att_control {
 namespace {
 
 using test::any_attitude;
@@ -143,4 +143,4 @@ TEST(AttitudeControl, DirectRotationTakesOverWhenUpsideDown) {
 }
 
 }  // namespace
-}  // namespace attest::reference
+}  // namespace attest::mc_att_control

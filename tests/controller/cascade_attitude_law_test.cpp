@@ -64,7 +64,7 @@ RC_GTEST_PROP(CascadeAttitudeLaw, AgreesWithDoubleAwayFromHalfTurns, ()) {
   const test::Quaterniond tilt =
       test::tilt_quaternion(*uniform(-M_PI, M_PI), *uniform(0, 179) * M_PI / 180);
   const test::Quaterniond yaw = test::yaw_quaternion(*uniform(-179, 179) * M_PI / 180);
-  const test::Quaterniond q_d = reference::product(reference::product(q, tilt), yaw);
+  const test::Quaterniond q_d = mc_att_control::product(mc_att_control::product(q, tilt), yaw);
   Parameters parameters = default_attitude_parameters();
   parameters.mc_rollrate_max = parameters.mc_pitchrate_max = parameters.mc_yawrate_max = 1800;
   const Vector3<float> in_float = rates_of<float>(cascade_quaternion<float>(q),

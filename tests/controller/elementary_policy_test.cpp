@@ -6,7 +6,7 @@
 
 #include "controller/cascade/attitude_unit_definition.hpp"
 #include "controller/elementary/float_with.hpp"
-#include "controller/reference/tailsitter_recovery_definition.hpp"
+#include "controller/mc_att_control/tailsitter_recovery_definition.hpp"
 #include "tests/controller/cascade_walk.hpp"
 
 namespace attest::elementary {
@@ -63,11 +63,11 @@ Bits attitude_unit_outputs() {
 
 template <typename Scalar>
 Bits recovery_outputs() {
-  using Stages = reference::RecoveryStages<Scalar>;
+  using Stages = mc_att_control::RecoveryStages<Scalar>;
   Bits bits;
   for (int i = 0; i < 100; ++i) {
     const float half = 0.015f * static_cast<float>(i), c = attest_cosf(half), s = attest_sinf(half);
-    const reference::Quaternion<Scalar> q_WB{Scalar(c), Scalar(0.6f * s), Scalar(0.8f * s), 0};
+    const mc_att_control::Quaternion<Scalar> q_WB{Scalar(c), Scalar(0.6f * s), Scalar(0.8f * s), 0};
     const auto tilt = Stages::tilt(q_WB, {1, 0, 0, 0});
     add(bits, float(tilt.angle_rad));
     add(bits, float(tilt.direction_rad));

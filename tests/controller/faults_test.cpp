@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "controller/faults/faulty_controller.hpp"
-#include "controller/reference/unit.hpp"
+#include "controller/mc_att_control/unit.hpp"
 
 namespace attest::faults {
 namespace {
@@ -58,7 +58,7 @@ attest_outputs flown(FaultyController& controller) {
 
 TEST(FaultyController, WithoutAFaultIsTheReferenceToTheBit) {
   FaultyController controller(Profile::px4_v1_5_5, {});
-  const attest_unit& unit = *reference::reference_unit();
+  const attest_unit& unit = *mc_att_control::mc_att_control_unit();
   void* const self = unit.create("px4-v1.5.5");
   attest_outputs got{}, want{};
   for (std::uint64_t i = 0; i < 50; ++i) {

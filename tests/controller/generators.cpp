@@ -63,7 +63,7 @@ rc::Gen<Quaterniond> any_attitude() {
   return rc::gen::exec([] {
     const Quaterniond yaw = yaw_quaternion(*uniform(-M_PI, M_PI));
     const Quaterniond tilt = tilt_quaternion(*uniform(-M_PI, M_PI), *uniform(0.0, M_PI));
-    return reference::product(yaw, tilt);
+    return mc_att_control::product(yaw, tilt);
   });
 }
 

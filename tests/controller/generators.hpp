@@ -8,11 +8,11 @@
 #include <rapidcheck.h>
 
 #include "controller/attest_unit.h"
-#include "controller/reference/rotation.hpp"
+#include "controller/mc_att_control/rotation.hpp"
 
 namespace attest::test {
 
-using Quaterniond = reference::Quaternion<double>;
+using Quaterniond = mc_att_control::Quaternion<double>;
 
 // Evenly spread over [low, high], for every size that rapidcheck asks for.
 rc::Gen<double> uniform(double low, double high);

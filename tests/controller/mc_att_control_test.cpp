@@ -1,4 +1,4 @@
-#include "controller/reference/mc_att_control.hpp"
+#include "controller/mc_att_control/mc_att_control.hpp"
 
 #include <cmath>
 
@@ -7,7 +7,7 @@
 
 #include "tests/controller/generators.hpp"
 
-namespace attest::reference {
+namespace attest::mc_att_control {
 namespace {
 
 constexpr std::uint32_t everything = 0xff;  // except parameter_update
@@ -204,4 +204,4 @@ RC_GTEST_PROP(McAttControl, TwoInstancesAgree, ()) {
 }
 
 }  // namespace
-}  // namespace attest::reference
+}  // namespace attest::mc_att_control

@@ -1,4 +1,4 @@
-#include "controller/reference/parameters.hpp"
+#include "controller/mc_att_control/parameters.hpp"
 
 #include <cmath>
 #include <set>
@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "controller/reference/gains.hpp"
+#include "controller/mc_att_control/gains.hpp"
 
-namespace attest::reference {
+namespace attest::mc_att_control {
 namespace {
 
 TEST(Parameters, NamesAreUnique) {
@@ -92,4 +92,4 @@ TEST(Gains, DegreesBecomeRadians) {
 }
 
 }  // namespace
-}  // namespace attest::reference
+}  // namespace attest::mc_att_control

@@ -1,4 +1,4 @@
-#include "controller/reference/rate_control.hpp"
+#include "controller/mc_att_control/rate_control.hpp"
 
 #include <cmath>
 
@@ -7,7 +7,7 @@
 
 #include "tests/controller/generators.hpp"
 
-namespace attest::reference {
+namespace attest::mc_att_control {
 namespace {
 
 using test::any_float;
@@ -155,4 +155,4 @@ RC_GTEST_PROP(RateControl, IntegralStartsFromZeroUnlessFlying, ()) {
 }
 
 }  // namespace
-}  // namespace attest::reference
+}  // namespace attest::mc_att_control

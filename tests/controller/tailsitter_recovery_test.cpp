@@ -1,4 +1,4 @@
-#include "controller/reference/tailsitter_recovery.hpp"
+#include "controller/mc_att_control/tailsitter_recovery.hpp"
 
 #include <cmath>
 
@@ -7,7 +7,7 @@
 
 #include "tests/controller/generators.hpp"
 
-namespace attest::reference {
+namespace attest::mc_att_control {
 namespace {
 
 using test::any_attitude;
@@ -65,4 +65,4 @@ RC_GTEST_PROP(TailsitterRecovery, TiltFromALevelSetpointIsFound, ()) {
 }
 
 }  // namespace
-}  // namespace attest::reference
+}  // namespace attest::mc_att_control

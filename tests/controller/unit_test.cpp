@@ -1,4 +1,4 @@
-#include "controller/reference/unit.hpp"
+#include "controller/mc_att_control/unit.hpp"
 
 #include <cmath>
 #include <memory>
@@ -7,26 +7,26 @@
 
 #include <gtest/gtest.h>
 
-#include "controller/reference/parameters.hpp"
-#include "controller/reference/profile.hpp"
+#include "controller/mc_att_control/parameters.hpp"
+#include "controller/mc_att_control/profile.hpp"
 #include "tests/controller/allocation_count.hpp"
 #include "tests/controller/generators.hpp"
 
 extern "C" int attest_abi_from_c(const attest_unit* unit);
 extern "C" int attest_actuation_from_c(const attest_unit* unit);
 
-namespace attest::reference {
+namespace attest::mc_att_control {
 namespace {
 
-const attest_unit& unit() { return *reference_unit(); }
+const attest_unit& unit() { return *mc_att_control_unit(); }
 
 TEST(Unit, WorksFromC) {
-  EXPECT_EQ(attest_abi_from_c(reference_unit()), 0) << "line of abi_from_c";
+  EXPECT_EQ(attest_abi_from_c(mc_att_control_unit()), 0) << "line of abi_from_c";
 }
 
 TEST(Unit, HasAMixerAndABatteryEstimate) {
-  EXPECT_EQ(attest_actuation_from_c(reference_unit()), 0) << "line of abi_from_c";
-  EXPECT_EQ(attest_actuation_from_c(reference_unit_in_double()), 0) << "line of abi_from_c";
+  EXPECT_EQ(attest_actuation_from_c(mc_att_control_unit()), 0) << "line of abi_from_c";
+  EXPECT_EQ(attest_actuation_from_c(mc_att_control_unit_in_double()), 0) << "line of abi_from_c";
 }
 
 TEST(Unit, KnowsItsProfiles) {
@@ -103,4 +103,4 @@ TEST(AllocationCount, SeesAnAllocation) {
 }
 
 }  // namespace
-}  // namespace attest::reference
+}  // namespace attest::mc_att_control

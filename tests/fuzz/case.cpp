@@ -49,7 +49,7 @@ void require_same_inputs(const Case& the_case, const Case& again, const Rate& ra
 
 void use_flight(const Case& the_case, const LoopRate& rate) {
   flight_timing(the_case, rate);
-  const Timeline timeline = timeline_of(the_case, rate.unit);
+  const Timeline timeline = timeline_of(the_case, rate.motor_unit);
   task_times(the_case.flight->saturation, timeline);
   if (the_case.flight->battery) task_times(the_case.flight->battery->timing, timeline);
 }
@@ -57,8 +57,8 @@ void use_flight(const Case& the_case, const LoopRate& rate) {
 void use(const Case& the_case, const Case& again) {
   require(!the_case.configurations().empty(), "there is a run configuration");
   for (const LoopRate& rate : {the_case.rates.front(), the_case.rates.back()}) {
-    if (tick_count(the_case.duration, rate.unit) > most_ticks) continue;
-    require_same_inputs(the_case, again, rate.unit);
+    if (tick_count(the_case.duration, rate.motor_unit) > most_ticks) continue;
+    require_same_inputs(the_case, again, rate.motor_unit);
     if (the_case.flight) use_flight(the_case, rate);
   }
 }

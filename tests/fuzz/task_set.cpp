@@ -2,8 +2,8 @@
 // release, and no response is longer than the computed bound.
 #include "harness/casefile/task_set.hpp"
 
+#include "harness/core/response_time.hpp"
 #include "harness/loop/scheduled_timing.hpp"
-#include "harness/schedule/response_time.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace attest::fuzz {

@@ -4,7 +4,7 @@
 
 namespace {
 
-using namespace attest::reference;
+using namespace attest::mc_att_control;
 
 struct Stages : AttitudeStages<float> {
   static bool is_upset(float cosine) { return cosine < -0.1736f; }

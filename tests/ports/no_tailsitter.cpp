@@ -2,8 +2,8 @@
 // separately.
 #include <cstring>
 
-#include "controller/reference/mc_att_control.hpp"
-#include "controller/reference/unit_table.hpp"
+#include "controller/mc_att_control/mc_att_control.hpp"
+#include "controller/mc_att_control/unit_table.hpp"
 
 namespace {
 
@@ -14,7 +14,7 @@ const void* extension(const char* id) {
 }  // namespace
 
 extern "C" __attribute__((visibility("default"))) const attest_unit* attest_unit_v1(void) {
-  using Table = attest::reference::UnitTable<attest::reference::McAttControl<float>>;
+  using Table = attest::mc_att_control::UnitTable<attest::mc_att_control::McAttControl<float>>;
   static const attest_unit table = [] {
     attest_unit unit = Table::named("no tailsitter", "1");
     unit.extension = extension;

@@ -18,7 +18,7 @@ using testing::IsEmpty;
 using testing::Lt;
 using testing::SizeIs;
 
-const Subject subject{"px4-v1.5.5"};
+const ModuleUnderTest subject{"px4-v1.5.5"};
 
 // A vector on which a dropped yaw weight and a missing attenuation change the outputs.
 Trace given() {

@@ -11,7 +11,8 @@ namespace attest {
 std::vector<Trace> answers_of_reference(const Case& the_case) {
   std::vector<Trace> answers;
   for (const LoopRate& rate : the_case.rates) {
-    const auto outputs = reference_outputs(subject_of(the_case), stimulate(the_case, rate.unit));
+    const auto outputs =
+        reference_outputs(subject_of(the_case), stimulate(the_case, rate.motor_unit));
     EXPECT_TRUE(outputs) << outputs.error().to_string();
     answers.push_back(outputs.value_or(Trace{}));
   }

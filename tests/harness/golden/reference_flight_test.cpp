@@ -27,7 +27,7 @@ class ReferenceFlightTest : public testing::Test {
 
   Trace flown_by(Port& port) const {
     return fly(case_, at_50, *iris_, *port.create(case_.profile),
-               case_timing(case_, at_50.rate.unit))
+               case_timing(case_, at_50.rate.motor_unit))
         ->trace;
   }
   // The time until the outputs of float and double differ by more than the tolerance.

@@ -58,7 +58,7 @@ bool same_samples(const std::vector<Sample>& one, const std::vector<Sample>& oth
       });
 }
 
-const Subject unit{"px4-v1.5.5"};
+const ModuleUnderTest unit{"px4-v1.5.5"};
 
 TEST(PortProcess, DrivesAsHere) {
   for (const std::string port : {"builtin", "sign_flip"}) {
@@ -81,7 +81,7 @@ TEST(PortProcess, DrivesTheSameInParts) {
     const auto host = host_of(port);
     for (const std::size_t most : {1U, 7U, 30U}) {
       PartsOfTrace parts(whole);
-      Subject subject = unit;
+      ModuleUnderTest subject = unit;
       std::vector<Sample> answered;
       ASSERT_TRUE(for_each_part(parts, most, [&](Trace part, std::size_t first, bool is_last) {
         for (Sample& sample : part.samples) sample.clear_outputs();
@@ -99,7 +99,7 @@ TEST(PortProcess, DrivesTheSameInParts) {
 TEST(PortProcess, ATraceThatWasNotDrivenToItsEndLeavesNoInstance) {
   Trace first = pitching(), whole = pitching();
   const auto host = host_of("builtin");
-  Subject part = unit;
+  ModuleUnderTest part = unit;
   part.part = {0, false};
   EXPECT_FALSE(host->drive(part, first));
   EXPECT_FALSE(host->drive(part, whole));
@@ -112,7 +112,7 @@ TEST(PortProcess, AFaultInALaterPartHasTheTickOfTheTrace) {
   ASSERT_TRUE(expected);
   const auto host = host_of("step_fails");
   PartsOfTrace parts(whole);
-  Subject subject = unit;
+  ModuleUnderTest subject = unit;
   std::optional<PortFault> fault;
   ASSERT_TRUE(for_each_part(parts, 7, [&](Trace part, std::size_t tick, bool is_last) {
     subject.part = {tick, is_last};
@@ -157,7 +157,7 @@ TEST(PortProcess, TimesEachStepOfAUnitOfTheCascade) {
   for (std::size_t i = 0; i < level.samples.size(); ++i) {
     level.samples[i].in.timestamp = 5'000'000 + 1000 * i;
   }
-  const Subject rate_unit{"px4-v1.16.0", Module::rate_unit};
+  const ModuleUnderTest rate_unit{"px4-v1.16.0", Module::rate_unit};
   const auto times = host_of("builtin")->time_steps(rate_unit, level, true);
   ASSERT_TRUE(times) << times.error().to_string();
   EXPECT_FALSE(times->fault);

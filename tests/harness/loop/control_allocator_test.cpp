@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "controller/actuation/mixer.hpp"
-#include "harness/schedule/random.hpp"
+#include "harness/core/random.hpp"
 
 namespace attest {
 namespace {

@@ -25,7 +25,7 @@ TEST(Fly, AMotorThatTheVehicleDoesNotHaveCannotFail) {
   const auto flown = [&](std::size_t rotor) {
     failure.flight->motor_failure->rotor = rotor;
     const auto unit = open_builtin()->create(failure.profile);
-    return fly(failure, at_50, *iris, *unit, case_timing(failure, at_50.rate.unit));
+    return fly(failure, at_50, *iris, *unit, case_timing(failure, at_50.rate.motor_unit));
   };
   EXPECT_TRUE(flown(3));
   const auto none = flown(4);

@@ -72,7 +72,7 @@ class Company : public testing::Test {
   std::optional<PortFault> drive_with(Instances instances) {
     trace_ = trace_of(2);
     for (Sample& sample : trace_.samples) sample.in.control_state.roll_rate = 1;
-    Subject subject{.profile = "any", .instances = instances};
+    ModuleUnderTest subject{.profile = "any", .instances = instances};
     if (instances == Instances::other_profiles) subject.other_profiles = {"first", "second"};
     return drive(port_, subject, trace_);
   }
@@ -133,7 +133,7 @@ TEST_F(Company, APortThatHasOneProfileAtATimeDoesNotSupportOthers) {
   trace_ = trace_of(3);
   const auto fault = drive(
       port_,
-      Subject{
+      ModuleUnderTest{
           .profile = "any", .instances = Instances::other_profiles, .other_profiles = {"first"}},
       trace_);
   ASSERT_TRUE(fault);
@@ -173,7 +173,7 @@ std::ptrdiff_t wrong_ticks(Instances instances, bool one_at_a_time) {
   port.one_at_a_time = one_at_a_time;
   Trace trace = trace_of(3000);
   for (Sample& sample : trace.samples) sample.in.control_state.roll_rate = 1;
-  EXPECT_FALSE(drive(port, Subject{.profile = "any", .instances = instances}, trace));
+  EXPECT_FALSE(drive(port, ModuleUnderTest{.profile = "any", .instances = instances}, trace));
   return std::ranges::count_if(trace.samples, [](const Sample& sample) {
     return sample.out.actuator_controls_0.control[0] != 1;
   });
@@ -252,7 +252,7 @@ class CompanyOfAUnit : public testing::Test {
  protected:
   // The notes of the other instance; those of the judged one follow them.
   std::vector<std::string> notes_of(Trace trace, const std::string& profile = "px4-v1.16.0") {
-    Subject subject{.profile = profile, .module = Module::rate_unit};
+    ModuleUnderTest subject{.profile = profile, .module = Module::rate_unit};
     subject.instances = Instances::again;
     EXPECT_FALSE(drive(port_, subject, trace));
     return port_.notes;

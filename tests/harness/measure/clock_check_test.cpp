@@ -44,9 +44,11 @@ TEST(ClockCheck, CountsStepsThatAreMadeTwice) {
 class Host final : public PortHost {
  public:
   const Declarations& declarations() const override { return declarations_; }
-  std::optional<PortFault> drive(const Subject&, Trace&) override { return {}; }
+  std::optional<PortFault> drive(const ModuleUnderTest&, Trace&) override { return {}; }
   Result<Flown> fly(const FlightPlan&) override { return Flown{}; }
-  Result<StepTimes> time_steps(const Subject&, const Trace&, bool) override { return StepTimes{}; }
+  Result<StepTimes> time_steps(const ModuleUnderTest&, const Trace&, bool) override {
+    return StepTimes{};
+  }
   bool supports(const std::string&) override { return true; }
   std::optional<Nanoseconds> cpu_time() const override {
     return used_ ? std::optional(*used_ += 1h) : std::nullopt;

@@ -15,20 +15,20 @@ class GivenHost final : public PortHost {
  public:
   struct Answers {
     Declarations says;
-    std::function<std::optional<PortFault>(const Subject&, Trace&)> drive;
+    std::function<std::optional<PortFault>(const ModuleUnderTest&, Trace&)> drive;
     std::function<Result<Flown>(const FlightPlan&)> fly;
-    std::function<Result<StepTimes>(const Subject&, const Trace&, bool)> time_steps;
+    std::function<Result<StepTimes>(const ModuleUnderTest&, const Trace&, bool)> time_steps;
     std::function<bool()> is_spent = [] { return false; };
   };
 
   explicit GivenHost(Answers answers) : answers_(std::move(answers)) {}
 
   const Declarations& declarations() const override { return answers_.says; }
-  std::optional<PortFault> drive(const Subject& subject, Trace& trace) override {
+  std::optional<PortFault> drive(const ModuleUnderTest& subject, Trace& trace) override {
     return answers_.drive(subject, trace);
   }
   Result<Flown> fly(const FlightPlan& plan) override { return answers_.fly(plan); }
-  Result<StepTimes> time_steps(const Subject& subject, const Trace& inputs,
+  Result<StepTimes> time_steps(const ModuleUnderTest& subject, const Trace& inputs,
                                bool with_stack) override {
     return answers_.time_steps(subject, inputs, with_stack);
   }

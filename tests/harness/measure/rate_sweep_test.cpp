@@ -168,7 +168,7 @@ TEST_F(Sweep, TheLowestRateIsSearchedAtTheTimesOfTheCaseOnItsPlant) {
   EXPECT_EQ(run(0)->lowest_rate_hz, 400);
   ASSERT_FALSE(plans_.empty());
   for (const FlightPlan& plan : plans_) {
-    EXPECT_EQ(plan.timing.unit, case_timing(case_, plan.configuration.rate.unit));
+    EXPECT_EQ(plan.timing.unit, case_timing(case_, plan.configuration.rate.motor_unit));
     EXPECT_EQ(plan.configuration.plant_configuration, plant_configuration_);
     EXPECT_FALSE(plan.from_one_period_on);
   }

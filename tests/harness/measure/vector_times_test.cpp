@@ -49,7 +49,7 @@ VectorTimes with_stack_of(std::optional<std::size_t> bytes) { return {{}, {}, by
 
 // A request to the host.
 struct Question {
-  Subject subject;
+  ModuleUnderTest subject;
   std::vector<std::uint64_t> timestamps;
   bool with_stack = false;
 };
@@ -70,7 +70,8 @@ class TimeCorpus : public testing::Test {
     GivenHost::Answers answers;
     answers.says = declarations_;
     answers.is_spent = [this] { return is_spent_; };
-    answers.time_steps = [this](const Subject& subject, const Trace& inputs, bool with_stack) {
+    answers.time_steps = [this](const ModuleUnderTest& subject, const Trace& inputs,
+                                bool with_stack) {
       Question question{subject, {}, with_stack};
       for (const Sample& sample : inputs.samples) {
         question.timestamps.push_back(sample.in.timestamp);

@@ -116,7 +116,7 @@ TEST_F(WriteSlowest, NothingThatWasTimedIsAnError) {
 TEST_F(WriteSlowest, APortThatGoesWrongNowIsAnError) {
   const auto done = write([](const HostOptions&, const Course&) {
     GivenHost::Answers answers;
-    answers.drive = [](const Subject&, Trace&) {
+    answers.drive = [](const ModuleUnderTest&, Trace&) {
       return PortFault{PortFault::Kind::crash, 2, "it died"};
     };
     return std::make_unique<GivenHost>(answers);

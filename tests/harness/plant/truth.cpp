@@ -8,8 +8,8 @@
 #include <boost/math/special_functions/jacobi_elliptic.hpp>
 #include <fmt/format.h>
 
+#include "harness/core/random.hpp"
 #include "harness/plant/ode_plant.hpp"
-#include "harness/schedule/random.hpp"
 #include "tests/harness/plant/judged.hpp"
 #include "tests/harness/plant/test_vehicle.hpp"
 

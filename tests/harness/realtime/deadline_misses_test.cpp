@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/schedule/random.hpp"
+#include "harness/core/random.hpp"
 #include "tests/harness/times.hpp"
 
 namespace attest {

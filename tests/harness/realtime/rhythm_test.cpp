@@ -9,7 +9,7 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <gtest/gtest.h>
 
-#include "harness/schedule/random.hpp"
+#include "harness/core/random.hpp"
 
 namespace attest {
 namespace {

@@ -34,8 +34,8 @@ class ChangedFlight final : public PortHost {
     if (flown) change_(flown->trace);
     return flown;
   }
-  std::optional<PortFault> drive(const Subject&, Trace&) override { return std::nullopt; }
-  Result<StepTimes> time_steps(const Subject&, const Trace&, bool) override {
+  std::optional<PortFault> drive(const ModuleUnderTest&, Trace&) override { return std::nullopt; }
+  Result<StepTimes> time_steps(const ModuleUnderTest&, const Trace&, bool) override {
     return fail("no times");
   }
   bool supports(const std::string&) override { return true; }
@@ -63,8 +63,8 @@ class EvaluateFlight : public testing::Test {
     case_.flight->metrics = {metric_};
     ChangedFlight host({&case_, iris_.get()}, change);
     host.declarations_.fraction_bits = bits;
-    auto result =
-        evaluate_timed_flight(case_, at_50, *iris_, case_timing(case_, at_50.rate.unit), host);
+    auto result = evaluate_timed_flight(case_, at_50, *iris_,
+                                        case_timing(case_, at_50.rate.motor_unit), host);
     EXPECT_TRUE(result) << result.error().to_string();
     return result ? *std::move(result) : VectorResult{};
   }

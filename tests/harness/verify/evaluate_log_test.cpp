@@ -172,11 +172,11 @@ TEST(EvaluateLog, AnotherLogJudgesOnlyWhereTheReferenceAgreesWithIt) {
 class OfAnyProfile final : public PortHost {
  public:
   const Declarations& declarations() const override { return host_.declarations(); }
-  std::optional<PortFault> drive(const Subject& subject, Trace& trace) override {
+  std::optional<PortFault> drive(const ModuleUnderTest& subject, Trace& trace) override {
     return host_.drive({law_of_log, subject.module}, trace);
   }
   Result<Flown> fly(const FlightPlan& plan) override { return host_.fly(plan); }
-  Result<StepTimes> time_steps(const Subject& wanted, const Trace& inputs,
+  Result<StepTimes> time_steps(const ModuleUnderTest& wanted, const Trace& inputs,
                                bool with_stack) override {
     return host_.time_steps(wanted, inputs, with_stack);
   }

@@ -93,14 +93,14 @@ class Reciting final : public PortHost {
   explicit Reciting(Trace answers) : answers_(std::move(answers)) {}
 
   const Declarations& declarations() const override { return declarations_; }
-  std::optional<PortFault> drive(const Subject&, Trace& trace) override {
+  std::optional<PortFault> drive(const ModuleUnderTest&, Trace& trace) override {
     for (std::size_t i = 0; i < trace.samples.size(); ++i) {
       trace.samples[i].out = answers_.samples[i].out;
     }
     return std::nullopt;
   }
   Result<Flown> fly(const FlightPlan&) override { return fail("no flights"); }
-  Result<StepTimes> time_steps(const Subject&, const Trace&, bool) override {
+  Result<StepTimes> time_steps(const ModuleUnderTest&, const Trace&, bool) override {
     return fail("no times");
   }
   bool supports(const std::string&) override { return true; }
@@ -151,13 +151,13 @@ class UnsupportedLater final : public PortHost {
   explicit UnsupportedLater(const std::string& port) : host_(opened(port)) {}
 
   const Declarations& declarations() const override { return host_->declarations(); }
-  std::optional<PortFault> drive(const Subject& subject, Trace& trace) override {
+  std::optional<PortFault> drive(const ModuleUnderTest& subject, Trace& trace) override {
     auto fault = host_->drive(subject, trace);
     if (fault || subject.part.first_tick + trace.samples.size() <= 12) return fault;
     return PortFault{PortFault::Kind::unsupported, 12, "step at tick 12 ..."};
   }
   Result<Flown> fly(const FlightPlan& plan) override { return host_->fly(plan); }
-  Result<StepTimes> time_steps(const Subject& wanted, const Trace& inputs,
+  Result<StepTimes> time_steps(const ModuleUnderTest& wanted, const Trace& inputs,
                                bool with_stack) override {
     return host_->time_steps(wanted, inputs, with_stack);
   }
@@ -178,7 +178,7 @@ class PartsTest : public EvaluateTest {
   // Expects the same result for parts of any size as for the whole trace.
   void expect_the_same(const std::function<std::unique_ptr<PortHost>()>& open,
                        Level level = Level::numeric) {
-    const Subject subject{"px4-v1.5.5"};
+    const ModuleUnderTest subject{"px4-v1.5.5"};
     const Tolerances tolerances(level);
     const VectorResult whole = evaluate_trace(recorded_, subject, *open(), tolerances);
     for (const std::size_t most : {1U, 7U, 30U, 1000U}) {

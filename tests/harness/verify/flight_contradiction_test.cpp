@@ -35,7 +35,7 @@ class AFlight {
 
   // Makes the outputs those of the law for the inputs of the trace.
   void answer(Trace& trace) const {
-    const Subject subject{case_.profile, module_of(trace.present)};
+    const ModuleUnderTest subject{case_.profile, module_of(trace.present)};
     EXPECT_FALSE(InProcessHost(open_builtin()).drive(subject, trace));
   }
 

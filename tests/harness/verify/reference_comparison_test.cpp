@@ -19,7 +19,7 @@ constexpr const char* profile = "px4-v1.5.5";
 // 10 ticks of the reference's outputs for a vehicle that rolls and pitches.
 Trace flown(const std::string& body = "[control_state]\nroll_rate = 0.4\npitch_rate = 0.5\n") {
   Trace trace = stimulate(case_of(body), Rate::hz(250));
-  EXPECT_FALSE(drive(*open_builtin(), Subject{profile}, trace));
+  EXPECT_FALSE(drive(*open_builtin(), ModuleUnderTest{profile}, trace));
   trace.present = channels_of(Module::mc_att_control);
   return trace;
 }

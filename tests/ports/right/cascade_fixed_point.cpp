@@ -34,12 +34,13 @@ inline Fixed rounded(Fixed::Wide accumulated) {
 }
 
 template <>
-inline Fixed attest::reference::ordered::dot(const Vector3<Fixed>& a, const Vector3<Fixed>& b) {
+inline Fixed attest::mc_att_control::ordered::dot(const Vector3<Fixed>& a,
+                                                  const Vector3<Fixed>& b) {
   return rounded(accumulated(a, b));
 }
 
 template <>
-inline Fixed attest::reference::ordered::length(const Vector3<Fixed>& v) {
+inline Fixed attest::mc_att_control::ordered::length(const Vector3<Fixed>& v) {
   return Fixed::of_raw(root_of(accumulated(v, v)));
 }
 

@@ -8,7 +8,7 @@
 
 namespace {
 
-using namespace attest::reference;
+using namespace attest::mc_att_control;
 using Vector = Vector3<float>;
 using Matrix = Matrix3<float>;
 

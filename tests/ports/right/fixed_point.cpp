@@ -7,13 +7,13 @@
 #include <cstring>
 
 #include "controller/actuation/unit_table.hpp"
-#include "controller/reference/mc_att_control_definition.hpp"
-#include "controller/reference/unit_table.hpp"
+#include "controller/mc_att_control/mc_att_control_definition.hpp"
+#include "controller/mc_att_control/unit_table.hpp"
 #include "tests/ports/right/fixed.hpp"
 
 namespace {
 
-using namespace attest::reference;
+using namespace attest::mc_att_control;
 using Vector = Vector3<Fixed>;
 
 Vector fixed(const Vector3<float>& v) { return {Fixed(v[0]), Fixed(v[1]), Fixed(v[2])}; }
