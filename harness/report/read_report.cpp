@@ -51,7 +51,8 @@ void read_port(JsonReader reader, RunResult& run) {
     if (bits) run.fraction_bits = *bits;
     if (!bits) reader.wrong(bits.error().message);
   }
-  if (reader.has("fixed_step")) run.fixed_step = rate_from(reader, reader.text("fixed_step")).motor_unit;
+  if (reader.has("fixed_step"))
+    run.fixed_step = rate_from(reader, reader.text("fixed_step")).motor_unit;
   if (!reader.has("not_recorded")) return;
   for (const std::string& name : reader.texts("not_recorded")) {
     const ChannelSet named = channels_named(name);
