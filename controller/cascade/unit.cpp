@@ -1,32 +1,19 @@
 #include "controller/cascade/unit.hpp"
 
-#include "controller/cascade/unit_table.hpp"
+#include "controller/cascade/reference_table.hpp"
+#include "controller/cascade/whole.hpp"
+#include "controller/mc_att_control/unit.hpp"
 
 #ifndef ATTEST_REFERENCE_SCALAR
 #define ATTEST_REFERENCE_SCALAR float
 #endif
 
-#ifndef ATTEST_REFERENCE_VERSION
-#define ATTEST_REFERENCE_VERSION "unversioned"
-#endif
-
 namespace attest::cascade {
-namespace {
 
-template <typename Scalar>
-constexpr attest_unit table{ATTEST_UNIT_ABI_VERSION,
-                            "attest-cascade",
-                            ATTEST_REFERENCE_VERSION,
-                            nullptr,
-                            nullptr,
-                            nullptr,
-                            nullptr,
-                            extension<Scalar>};
+const attest_unit* cascade_unit() { return &reference_table<ATTEST_REFERENCE_SCALAR>; }
 
-}  // namespace
-
-const attest_unit* cascade_unit() { return &table<ATTEST_REFERENCE_SCALAR>; }
-
-const attest_unit* cascade_unit_in_double() { return &table<double>; }
+const attest_unit* whole_reference() {
+  return whole<mc_att_control::mc_att_control_unit, cascade_unit>();
+}
 
 }  // namespace attest::cascade

@@ -28,7 +28,7 @@ OPTIONAL_GROUPS = ("mixer", "battery_status")
 # name of the library, what is different in it
 REFERENCES = [
     ("reference_gcc_O0", "gcc -O0"),
-    ("reference_clang_O3", "clang -O3"),
+    ("reference_clang_native", "clang -O3 -march=native"),
     ("reference_fma_gcc", "gcc -O3 -march=native, contracted"),
     ("reference_fma_clang", "clang -O3 -march=native, contracted"),
     ("reference_unsafe_math", "gcc -funsafe-math-optimizations"),
