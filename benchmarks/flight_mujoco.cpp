@@ -36,7 +36,7 @@ struct Flying {
                              "/flight/tilt_step_30.toml")),
         configuration{rate, PlantConfiguration{"iris", PlantKind::mujoco}} {}
 
-  PortUnits units() const { return *units_for(the_case, *port, *port); }
+  PortUnits units() const { return *units_for(the_case, *port); }
   FlightTiming timing() const { return flight_timing(the_case, configuration.rate); }
 };
 

@@ -75,14 +75,14 @@ struct ParameterStimulus {
   Signal signal;
 };
 
-// Other work holds the processor for `length`, as in Stall (schedule/ticks.hpp).
+// Other work holds the processor for `length`, as in Stall (core/ticks.hpp).
 struct UnitStall {
   Span every, length;
   bool catches_up = false;
 };
 
 // The unit's own ticks: late by jitter or stalls, or missing, as in TickSchedule
-// (schedule/ticks.hpp).
+// (core/ticks.hpp).
 struct UnitTiming {
   Span start{5.0, Span::In::seconds};  // timestamp at time 0 of the case
   double jitter = 0;

@@ -15,10 +15,10 @@
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/loop/case_timing.hpp"
-#include "harness/measure/simulate.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/html/flight_page.hpp"
 #include "harness/ulog/trace_log.hpp"
+#include "harness/verify/simulate.hpp"
 
 namespace attest::cli {
 namespace {

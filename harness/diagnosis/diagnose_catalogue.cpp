@@ -5,8 +5,8 @@
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/compare/compare.hpp"
-#include "harness/golden/expected_outputs.hpp"
 #include "harness/golden/golden.hpp"
+#include "harness/golden/reference.hpp"
 #include "harness/loop/open_loop.hpp"
 
 namespace attest {

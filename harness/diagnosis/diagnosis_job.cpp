@@ -9,7 +9,7 @@
 #include "harness/casefile/stimulus.hpp"
 #include "harness/compare/compare.hpp"
 #include "harness/core/error_json.hpp"
-#include "harness/golden/expected_outputs.hpp"
+#include "harness/golden/reference.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/fixed_step.hpp"

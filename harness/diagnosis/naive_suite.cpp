@@ -5,7 +5,7 @@
 #include "harness/casefile/baseline.hpp"
 #include "harness/compare/compare.hpp"
 #include "harness/core/random.hpp"
-#include "harness/golden/expected_outputs.hpp"
+#include "harness/golden/reference.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/port/profiles.hpp"
 

@@ -28,8 +28,8 @@ Result<void> remove_without_case(const std::vector<SelectedCase>& cases, const G
 
 Result<PendingGoldens> write_new_goldens(const std::vector<SelectedCase>& cases,
                                          const Goldens& goldens, const BlessingOptions& options) {
-  auto reference =
-      options.port ? Reference::of_port(*options.port) : Result<Reference>(Reference::own());
+  auto reference = options.port ? GoldenSource::of_port(*options.port)
+                                : Result<GoldenSource>(GoldenSource::own());
   if (!reference) return tl::unexpected(reference.error());
   VehicleModels vehicle_models(options.models);
   PendingGoldens pending{NewGoldens(goldens), 0, {}};

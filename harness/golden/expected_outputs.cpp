@@ -1,13 +1,14 @@
 #include "harness/golden/expected_outputs.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/compare/compare.hpp"
-#include "harness/port/builtin.hpp"
+#include "harness/golden/reference.hpp"
 
 namespace attest {
 namespace {
@@ -73,16 +74,27 @@ Result<ExpectedOutputs> confirmed(Trace computed, const GoldenTrace& golden, con
                              channels()[first.channel].name, how_to_mend));
 }
 
-}  // namespace
-
-Result<Trace> reference_outputs(const ModuleUnderTest& subject, Trace inputs) {
-  ModuleUnderTest alone = subject;
-  alone.instances = Instances::one;
-  if (const auto fault = drive(*open_builtin(), alone, inputs)) {
-    return fail_at(inputs.source, fmt::format("the reference: {}", fault->what));
+// The error of a golden of a flight; empty if it can judge one.
+std::string complaint_about(const GoldenTrace& golden, const Case& the_case) {
+  const ChannelSet needed =
+      channels_of(the_case.module, "out/") | ChannelSet().set(timestamp_channel);
+  if (const ChannelSet missing = needed & ~golden.outputs.present; missing.any()) {
+    return fmt::format("has no column {}", channels()[missing._Find_first()].name);
   }
-  return inputs;
+  if (!golden.horizon_s || !std::isfinite(*golden.horizon_s) || *golden.horizon_s < 0) {
+    return "has no horizon_s that is a time";
+  }
+  for (const Metric& metric : the_case.flight->metrics) {
+    if (!golden.metrics.contains(metric.name)) return "has no metric/" + metric.name;
+  }
+  const auto& samples = golden.outputs.samples;
+  const bool increase = std::is_sorted(
+      samples.begin(), samples.end(),
+      [](const Sample& a, const Sample& b) { return a.in.timestamp <= b.in.timestamp; });
+  return increase ? "" : "has timestamps that do not increase";
 }
+
+}  // namespace
 
 Result<ExpectedOutputs> expected_outputs(const Case& the_case, const Rate& rate,
                                          const Golden& golden) {
@@ -104,6 +116,18 @@ Result<ExpectedOutputs> expected_outputs(const Case& the_case, const Rate& rate,
   auto computed = reference_outputs(subject_of(the_case), std::move(inputs));
   if (!computed) return tl::unexpected(computed.error());
   return confirmed(*std::move(computed), **stored, the_case);
+}
+
+Result<ReferenceFlight> expected_flight(const Case& the_case, const RunConfiguration& configuration,
+                                        const Vehicle& vehicle, const Golden& golden) {
+  if (auto same = golden.check_vehicle(vehicle); !same) return tl::unexpected(same.error());
+  const auto trace = golden.trace(configuration);
+  if (!trace) return tl::unexpected(trace.error());
+  if (const std::string wrong = complaint_about(**trace, the_case); !wrong.empty()) {
+    return fail_at(golden.file().string(),
+                   fmt::format("at {}, {}; {}", configuration.label(), wrong, how_to_mend));
+  }
+  return ReferenceFlight{(*trace)->outputs, *(*trace)->horizon_s, (*trace)->metrics};
 }
 
 }  // namespace attest

@@ -1,18 +1,14 @@
-// The outputs that are right for given inputs. They come from attest's reference. Where there is a
-// golden, the reference must agree with it.
+// What is right for a vector of the suite: the reference's outputs, with which the golden must
+// agree.
 #pragma once
 
 #include "harness/casefile/case.hpp"
 #include "harness/core/result.hpp"
 #include "harness/golden/golden.hpp"
-#include "harness/loop/open_loop.hpp"
+#include "harness/golden/reference_flight.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace attest {
-
-// `inputs` with the outputs of the reference, as one instance of the subject's module. Errors: the
-// reference fails.
-Result<Trace> reference_outputs(const ModuleUnderTest& subject, Trace inputs);
 
 struct ExpectedOutputs {
   Trace trace;  // the inputs of the vector, with the outputs that are right for them
@@ -28,5 +24,12 @@ struct ExpectedOutputs {
 // tolerances of the case.
 Result<ExpectedOutputs> expected_outputs(const Case& the_case, const Rate& rate,
                                          const Golden& golden);
+
+// The flight of the golden, which was one of the reference. Whether the reference still flies like
+// this costs a flight, so a judge asks only when a port fails by the golden alone. Errors: the
+// golden has no such flight, or was flown with another model of the vehicle; its trace lacks what a
+// comparison needs.
+Result<ReferenceFlight> expected_flight(const Case& the_case, const RunConfiguration& configuration,
+                                        const Vehicle& vehicle, const Golden& golden);
 
 }  // namespace attest

@@ -8,10 +8,9 @@
 #include "harness/casefile/stimulus.hpp"
 #include "harness/compare/compare.hpp"
 #include "harness/golden/keyframes.hpp"
+#include "harness/golden/reference.hpp"
 #include "harness/golden/reference_flight.hpp"
-#include "harness/host/in_process_host.hpp"
 #include "harness/host/manifest.hpp"
-#include "harness/port/builtin.hpp"
 
 namespace attest {
 namespace {
@@ -40,11 +39,11 @@ std::vector<std::size_t> every_tick(const Trace& trace) {
 // Adds the trace of an open-loop vector. If the reference is a port that does not support the case,
 // sets `made.left_out` instead.
 Result<void> add_open_loop(const Case& the_case, const RunConfiguration& configuration,
-                           Reference& reference, MadeGolden& made) {
+                           GoldenSource& source, MadeGolden& made) {
   Trace trace = stimulate(the_case, configuration.rate.motor_unit);
-  const std::string inputs = reference.is_own() ? "" : sha256_of_inputs(trace);
-  if (const auto fault = reference.drive(subject_of(the_case), trace)) {
-    if (!reference.is_own() && does_not_have_it(*fault)) {
+  const std::string inputs = source.is_own() ? "" : sha256_of_inputs(trace);
+  if (const auto fault = source.drive(subject_of(the_case), trace)) {
+    if (!source.is_own() && does_not_have_it(*fault)) {
       made.left_out = fault->what;
       return {};
     }
@@ -53,7 +52,7 @@ Result<void> add_open_loop(const Case& the_case, const RunConfiguration& configu
         fmt::format("the reference, at {} Hz: {}", configuration.rate.to_string(), fault->what));
   }
   if (!inputs.empty()) made.inputs[configuration.label()] = inputs;
-  const bool is_whole = !reference.is_own() || keeps_every_tick(trace.samples.size());
+  const bool is_whole = !source.is_own() || keeps_every_tick(trace.samples.size());
   made.traces.push_back(
       kept(trace, is_whole ? every_tick(trace) : keyframes_of(trace), configuration));
   return {};
@@ -73,19 +72,19 @@ Result<void> add_flight(const Case& the_case, const RunConfiguration& configurat
 
 }  // namespace
 
-Reference Reference::own() { return Reference(std::make_unique<InProcessHost>(open_builtin())); }
+GoldenSource GoldenSource::own() { return GoldenSource(open_reference()); }
 
-Result<Reference> Reference::of_port(const HostOptions& options) {
+Result<GoldenSource> GoldenSource::of_port(const HostOptions& options) {
   auto host = start_host(options);
   if (!host) return tl::unexpected(host.error());
   auto again = start_host(options);
   if (!again) return tl::unexpected(again.error());
-  Reference reference(*std::move(host));
-  reference.again_ = *std::move(again);
-  return reference;
+  GoldenSource source(*std::move(host));
+  source.again_ = *std::move(again);
+  return source;
 }
 
-std::optional<PortFault> Reference::drive(const ModuleUnderTest& subject, Trace& trace) {
+std::optional<PortFault> GoldenSource::drive(const ModuleUnderTest& subject, Trace& trace) {
   Trace second = trace;
   if (auto fault = host_->drive(subject, trace)) return fault;
   if (is_own()) return std::nullopt;
@@ -98,17 +97,17 @@ std::optional<PortFault> Reference::drive(const ModuleUnderTest& subject, Trace&
                                comparison.first ? comparison.first->tick : 0)};
 }
 
-Result<MadeGolden> make_golden(const Case& the_case, Reference& reference,
+Result<MadeGolden> make_golden(const Case& the_case, GoldenSource& source,
                                VehicleModels& vehicle_models, const std::function<bool()>& stop) {
   MadeGolden made;
-  if (the_case.flight && !reference.is_own()) {
+  if (the_case.flight && !source.is_own()) {
     made.left_out = "flights are compared with attest's own law";
     return made;
   }
   for (const RunConfiguration& configuration : the_case.configurations()) {
     if (stop()) return fail("interrupted");
     if (!configuration.plant_configuration) {
-      auto added = add_open_loop(the_case, configuration, reference, made);
+      auto added = add_open_loop(the_case, configuration, source, made);
       if (!added) return tl::unexpected(added.error());
       if (!made.left_out.empty()) return made;
       continue;

@@ -13,17 +13,17 @@ namespace attest {
 // The controller whose outputs become goldens: attest's own, or a port that a user's suite has as
 // its reference. A port runs twice, in two processes of its own, because its outputs must be
 // the same both times.
-class Reference {
+class GoldenSource {
  public:
-  static Reference own();
+  static GoldenSource own();
   // Errors: those of start_host().
-  static Result<Reference> of_port(const HostOptions& options);
+  static Result<GoldenSource> of_port(const HostOptions& options);
 
   bool is_own() const { return again_ == nullptr; }
   std::optional<PortFault> drive(const ModuleUnderTest& subject, Trace& trace);
 
  private:
-  explicit Reference(std::unique_ptr<PortHost> host) : host_(std::move(host)) {}
+  explicit GoldenSource(std::unique_ptr<PortHost> host) : host_(std::move(host)) {}
 
   std::unique_ptr<PortHost> host_;
   std::unique_ptr<PortHost> again_;  // of a port: a second process
@@ -33,7 +33,7 @@ class Reference {
 // compared with attest's own law at each tick. If a port does not support the case, `left_out` is
 // set. `stop` is called before each configuration. Errors: `stop` returned true; the reference
 // fails, or gives other outputs the second time; those of reference_flight().
-Result<MadeGolden> make_golden(const Case& the_case, Reference& reference,
+Result<MadeGolden> make_golden(const Case& the_case, GoldenSource& source,
                                VehicleModels& vehicle_models, const std::function<bool()>& stop);
 
 }  // namespace attest

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "harness/compare/compare.hpp"
+#include "harness/golden/reference.hpp"
 #include "harness/loop/case_timing.hpp"
 #include "harness/loop/flight.hpp"
-#include "harness/port/builtin.hpp"
 
 namespace attest {
 namespace {
@@ -14,21 +14,20 @@ namespace {
 // does, and still pass.
 constexpr double part_of_tolerance = 0.1;
 
-Result<Flown> flown_by(Port& port, const Case& the_case, const RunConfiguration& configuration,
-                       const VehicleModel& vehicle_model, const FlightTiming& timing) {
+Result<Flown> flown_in(Precision precision, const Course& course, const FlightPlan& plan) {
+  const Case& the_case = *course.the_case;
   const auto wrong = [&](const std::string& what) {
-    return fail_at(the_case.file.string(), fmt::format("at {}, {}", configuration.label(), what));
+    return fail_at(the_case.file.string(),
+                   fmt::format("at {}, {}", plan.configuration.label(), what));
   };
-  const auto units = units_for(the_case, port, port);
-  if (!units) return wrong(fmt::format("the reference has no profile `{}`", the_case.profile));
-  auto flown = fly(the_case, configuration, vehicle_model, units->for_flight(), timing);
-  if (!flown) return tl::unexpected(flown.error());
+  auto flown = open_reference(course, precision)->fly(plan);
+  if (!flown) return flown;
   if (flown->fault) return wrong("the reference: " + flown->fault->what);
   if (flown->divergence) {
     return wrong(fmt::format("the reference loses the vehicle at {:.3f} s: {}",
                              in_seconds(flown->divergence->at), flown->divergence->what));
   }
-  return *std::move(flown);
+  return flown;
 }
 
 double seconds_between(const Sample& first, const Sample& other) {
@@ -48,10 +47,11 @@ Result<ReferenceFlight> reference_flight(const Case& the_case,
                                          const RunConfiguration& configuration,
                                          const VehicleModel& vehicle_model,
                                          const FlightTiming& timing) {
-  auto flown = flown_by(*open_builtin(), the_case, configuration, vehicle_model, timing);
+  const Course course{&the_case, &vehicle_model};
+  const FlightPlan plan{configuration, timing};
+  auto flown = flown_in(Precision::binary32, course, plan);
   if (!flown) return tl::unexpected(flown.error());
-  const auto in_double =
-      flown_by(*open_builtin_in_double(), the_case, configuration, vehicle_model, timing);
+  const auto in_double = flown_in(Precision::binary64, course, plan);
   if (!in_double) return tl::unexpected(in_double.error());
 
   ReferenceFlight result;

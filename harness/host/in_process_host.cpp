@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "harness/host/step_timer.hpp"
-#include "harness/port/builtin.hpp"
 #include "harness/port/profiles.hpp"
 
 namespace attest {
@@ -51,8 +50,7 @@ std::optional<PortFault> InProcessHost::drive_part(const ModuleUnderTest& subjec
 Result<Flown> InProcessHost::fly(const FlightPlan& plan) {
   const Case& whole = *course_.the_case;
   return ports_.run([&]() -> Result<Flown> {
-    const auto reference = open_builtin();
-    const auto units = units_for(whole, driven(), *reference);
+    const auto units = units_for(whole, driven());
     if (!units) {
       Flown none;
       if (whole.attitude_loop) none.attitude_trace.emplace();

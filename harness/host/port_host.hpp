@@ -9,6 +9,7 @@
 
 #include "harness/core/loop_timing.hpp"
 #include "harness/host/declarations.hpp"
+#include "harness/loop/case_timing.hpp"
 #include "harness/loop/flight.hpp"
 #include "harness/loop/open_loop.hpp"
 
@@ -24,6 +25,11 @@ struct FlightPlan {
   RunConfiguration configuration;
   FlightTiming timing;
   bool from_one_period_on = false;  // Case::from_one_period_on()
+
+  // With the times that the case schedules.
+  static FlightPlan as_scheduled(const Case& the_case, const RunConfiguration& configuration) {
+    return {configuration, flight_timing(the_case, configuration.rate)};
+  }
 };
 
 struct StepTimes {

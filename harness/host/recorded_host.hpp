@@ -9,7 +9,7 @@
 
 namespace attest {
 
-// `folder` was made by `attest vectors`, and outputs were added (recording/manifest.hpp). The host
+// `folder` was made by `attest vectors`, and outputs were added (host/manifest.hpp). The host
 // identifies a vector by its id, Trace::source. Requests:
 //
 //     drive         the outputs in the vector's file. Fault Kind::unanswered: the vector has no

@@ -7,6 +7,7 @@
 #include "harness/core/large_pages.hpp"
 #include "harness/loop/case_timing.hpp"
 #include "harness/loop/closed_loop.hpp"
+#include "harness/port/builtin.hpp"
 
 namespace attest {
 namespace {
@@ -113,13 +114,13 @@ Result<std::unique_ptr<Plant>> plant_for(const Case& the_case,
       {physics_of(the_case, configuration.rate.motor_unit), flight.floor});
 }
 
-tl::expected<PortUnits, PortFault> units_for(const Case& the_case, Port& port, Port& other) {
+tl::expected<PortUnits, PortFault> units_for(const Case& the_case, Port& port) {
   const auto made_by = [&](Port& maker, Module module) -> std::unique_ptr<Unit> {
     if (!contains(maker.modules(), module)) return nullptr;
     return maker.create_unit(module, the_case.profile, "");
   };
   constexpr Module attitude_unit = Module::attitude_unit;
-  PortUnits units{made_by(port, the_case.module), nullptr};
+  PortUnits units{nullptr, made_by(port, the_case.module), nullptr};
   if (the_case.attitude_loop) units.attitude_unit = made_by(port, attitude_unit);
   if (!units.unit && !units.attitude_unit) return tl::unexpected(no_profile(the_case.profile));
   if (units.unit && units.attitude_unit) return units;
@@ -128,9 +129,10 @@ tl::expected<PortUnits, PortFault> units_for(const Case& the_case, Port& port, P
     if (made_by(port, attitude_unit)) return tl::unexpected(makes_one_at_a_time());
     units.unit = made_by(port, the_case.module);
   }
-  if (!units.unit) units.unit = made_by(other, the_case.module);
+  units.reference = open_builtin();
+  if (!units.unit) units.unit = made_by(*units.reference, the_case.module);
   if (the_case.attitude_loop && !units.attitude_unit) {
-    units.attitude_unit = made_by(other, attitude_unit);
+    units.attitude_unit = made_by(*units.reference, attitude_unit);
   }
   const bool is_complete = units.unit && (units.attitude_unit || !the_case.attitude_loop);
   if (!is_complete) return tl::unexpected(no_profile(the_case.profile));

@@ -47,17 +47,17 @@ Result<std::unique_ptr<Plant>> plant_for(const Case& the_case,
                                          const VehicleModel& vehicle_model);
 
 struct PortUnits {
+  std::unique_ptr<Port> reference;  // makes the unit that the port does not have; else null
   std::unique_ptr<Unit> unit, attitude_unit;
 
   FlightUnits for_flight() const { return {*unit, attitude_unit.get()}; }
 };
 
 // Makes the units of a flight by `port`. A port of the cascade may have only one of the two units:
-// then `other` makes the missing one. REQUIRES: a flight. Faults:
-// - Kind::profile: `port` makes no unit that the case needs, or `other` does not make the missing
-//   one
+// then the reference makes the missing one. REQUIRES: a flight. Faults:
+// - Kind::profile: `port` makes no unit that the case needs
 // - Kind::unsupported: `port` makes each of the two units, but not both at the same time
-tl::expected<PortUnits, PortFault> units_for(const Case& the_case, Port& port, Port& other);
+tl::expected<PortUnits, PortFault> units_for(const Case& the_case, Port& port);
 
 // Flies `the_case`, at the times that the case schedules, or at those of `timing`. REQUIRES: a
 // flight; units in their power-on state. Errors, with the case's file: those of check_rate();

@@ -283,8 +283,7 @@ std::size_t count_before(const ModuleUnderTest& subject, const Trace& trace) {
   return subject.instances == Instances::other_profiles ? 1 : 0;
 }
 
-std::optional<PortFault> drive_among_many(Port& port, const ModuleUnderTest& subject,
-                                          Trace& trace) {
+std::optional<PortFault> drive_with_many(Port& port, const ModuleUnderTest& subject, Trace& trace) {
   if (!contains(port.modules(), subject.module)) return lacks_module(port, subject);
   Many many(port, subject, trace);
   for (std::size_t left = count_before(subject, trace); left > 0; --left) {
@@ -317,8 +316,7 @@ std::optional<PortFault> PartDriver::drive(Trace& part, std::size_t first_tick) 
 }
 
 ModuleUnderTest subject_of(const Case& the_case) {
-  ModuleUnderTest subject{
-      the_case.profile, the_case.module, the_case.mixer, the_case.instances, {}, {}};
+  ModuleUnderTest subject{the_case.profile, the_case.module, the_case.mixer, the_case.instances};
   if (the_case.instances != Instances::other_profiles) return subject;
   std::ranges::remove_copy(the_case.profiles, std::back_inserter(subject.other_profiles),
                            the_case.profile);
@@ -336,7 +334,7 @@ tl::expected<std::unique_ptr<Unit>, PortFault> make_unit(Port& port,
 }
 
 std::optional<PortFault> drive(Port& port, const ModuleUnderTest& subject, Trace& trace) {
-  if (are_many(subject.instances)) return drive_among_many(port, subject, trace);
+  if (are_many(subject.instances)) return drive_with_many(port, subject, trace);
   if (subject.instances == Instances::one) {
     const auto unit = make_unit(port, subject);
     return unit ? drive(**unit, trace, subject.module) : unit.error();

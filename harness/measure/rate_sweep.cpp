@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/core/error_json.hpp"
-#include "harness/loop/case_timing.hpp"
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/fixed_step.hpp"
 #include "harness/verify/judge.hpp"
@@ -31,7 +30,7 @@ class Trial {
 
   bool holds(const RunConfiguration& configuration, Nanoseconds delay) {
     if (result_.verdict != Verdict::pass || error_) return false;
-    FlightPlan plan{configuration, flight_timing(case_, configuration.rate)};
+    FlightPlan plan = FlightPlan::as_scheduled(case_, configuration);
     const Declarations& port = host_.declarations();
     if (has_other_steps(port, case_, configuration.rate.motor_unit, plan.timing, result_))
       return false;

@@ -7,7 +7,6 @@
 #include "harness/loop/flight.hpp"
 #include "harness/loop/timing_file.hpp"
 #include "harness/measure/stress_judge.hpp"
-#include "harness/port/builtin.hpp"
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/judge.hpp"
 
@@ -72,8 +71,7 @@ Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
   const bool is_cascade = task.the_case.attitude_loop.has_value();
   // The judge uses the modules declared before the run, so they must not have changed.
   if (is_cascade && port.modules() != task.port.modules) return measured;
-  const auto reference = open_builtin();
-  const auto units = units_for(task.the_case, port, *reference);
+  const auto units = units_for(task.the_case, port);
   if (!units) {
     if (units.error().kind != PortFault::Kind::profile) measured.refusal = units.error();
     return measured;

@@ -4,8 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "harness/loop/flight.hpp"
-#include "harness/port/builtin.hpp"
+#include "harness/golden/reference.hpp"
 #include "harness/verify/judge.hpp"
 #include "harness/verify/reference_comparison.hpp"
 
@@ -130,12 +129,10 @@ void judge_flight_end(const StressTask& task, const LiveFlight& flight, VectorRe
   }
   Case to_the_end = task.the_case;
   to_the_end.duration = {in_seconds(lost->at), Span::In::seconds};
-  const auto reference_port = open_builtin();
-  const auto reference = units_for(to_the_end, *reference_port, *reference_port);
-  if (!reference) return add_skip(result, how);
-  const auto again = fly(to_the_end, task.configuration, *task.vehicle_model,
-                         reference->for_flight(), flight.timing());
+  const auto again = open_reference({&to_the_end, task.vehicle_model.get()})
+                         ->fly({task.configuration, flight.timing()});
   if (!again) return add_skip(result, how + "; " + again.error().to_string());
+  if (again->fault) return add_skip(result, how);
   if (again->divergence) return add_skip(result, how + "; the reference loses the vehicle too");
   add(result, Verdict::fail, how + "; the reference does not lose the vehicle at the same times");
 }

@@ -10,8 +10,8 @@
 
 #include "harness/casefile/select.hpp"
 #include "harness/core/file.hpp"
+#include "harness/core/histogram.hpp"
 #include "harness/host/port_process.hpp"
-#include "harness/realtime/histogram.hpp"
 #include "harness/verify/verdict.hpp"
 
 namespace attest {

@@ -13,7 +13,6 @@
 #include "harness/core/result.hpp"
 #include "harness/loop/closed_loop.hpp"
 #include "harness/plant/plant.hpp"
-#include "harness/port/port.hpp"
 #include "harness/realtime/live_plant.hpp"
 #include "harness/realtime/live_unit.hpp"
 #include "harness/realtime/pacer.hpp"

@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
+#include "harness/core/histogram.hpp"
 #include "harness/loop/land_detector.hpp"
 #include "harness/loop/plant_task.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/realtime/clock.hpp"
-#include "harness/realtime/histogram.hpp"
 #include "harness/realtime/links.hpp"
 #include "harness/realtime/usage.hpp"
 

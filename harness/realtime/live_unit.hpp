@@ -14,10 +14,10 @@
 
 #include "harness/casefile/case.hpp"
 #include "harness/core/delay_line.hpp"
+#include "harness/core/histogram.hpp"
 #include "harness/core/loop_rate.hpp"
 #include "harness/loop/unit_task.hpp"
 #include "harness/realtime/clock.hpp"
-#include "harness/realtime/histogram.hpp"
 #include "harness/realtime/links.hpp"
 #include "harness/realtime/live_tick.hpp"
 #include "harness/realtime/usage.hpp"

@@ -12,13 +12,11 @@
 
 #include "harness/compare/compare.hpp"
 #include "harness/core/error_json.hpp"
-#include "harness/host/in_process_host.hpp"
+#include "harness/golden/reference.hpp"
 #include "harness/host/port_launcher.hpp"
-#include "harness/loop/case_timing.hpp"
-#include "harness/measure/simulate.hpp"
-#include "harness/port/builtin.hpp"
 #include "harness/process/pool.hpp"
 #include "harness/verify/fixed_step.hpp"
+#include "harness/verify/simulate.hpp"
 
 namespace attest {
 namespace {
@@ -35,7 +33,7 @@ struct SimulatedSample {
 Result<SimulatedSample> simulate(const FlightSampler& sampler, const SampledFlight& sample,
                                  PortHost& host) {
   const RunConfiguration configuration{sampler.sweep().rate, sampler.nominal().plant_configuration};
-  const FlightPlan plan{configuration, flight_timing(sample.the_case, configuration.rate)};
+  const auto plan = FlightPlan::as_scheduled(sample.the_case, configuration);
   auto flown = simulate_flight(sample.the_case, plan, host);
   if (!flown) return tl::unexpected(flown.error());
   auto& [result, flight] = *flown;
@@ -76,8 +74,8 @@ Result<std::string> fly_sample(const FlightSampler& sampler, const SampledFlight
                                std::uint64_t index, const FlightsOptions& options) {
   const SampledFlight of_reference = for_reference(sample, options);
   std::vector<FlightResult> flights;
-  InProcessHost reference(open_builtin(), {}, {&of_reference.the_case, sample.vehicle_model.get()});
-  auto flown = simulate(sampler, of_reference, reference);
+  const auto reference = open_reference({&of_reference.the_case, sample.vehicle_model.get()});
+  auto flown = simulate(sampler, of_reference, *reference);
   if (flown && options.with_port) {
     const SimulatedSample by_reference = *std::move(flown);
     flights.push_back(by_reference.result);

@@ -10,7 +10,7 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/statistics/bivariate_statistics.hpp>
 
-#include "harness/realtime/histogram.hpp"
+#include "harness/core/histogram.hpp"
 #include "harness/sweep/boost_policy.hpp"
 
 namespace attest {

@@ -10,6 +10,7 @@
 #include "harness/compare/events.hpp"
 #include "harness/golden/expected_outputs.hpp"
 #include "harness/golden/recorded.hpp"
+#include "harness/golden/reference.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/verify/fixed_step.hpp"
 #include "harness/verify/judge.hpp"

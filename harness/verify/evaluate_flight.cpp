@@ -9,11 +9,8 @@
 
 #include "harness/compare/compare_rows.hpp"
 #include "harness/golden/expected_outputs.hpp"
-#include "harness/golden/reference_flight.hpp"
-#include "harness/host/in_process_host.hpp"
-#include "harness/loop/case_timing.hpp"
+#include "harness/golden/reference.hpp"
 #include "harness/loop/flight.hpp"
-#include "harness/port/builtin.hpp"
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/fixed_step.hpp"
 #include "harness/verify/flight_contradiction.hpp"
@@ -216,8 +213,7 @@ Result<VectorResult> evaluate_with(const Course& course, const FlightPlan& plan,
 // Errors: the reference does not agree with the golden, so the golden is no judge of a port.
 Result<void> check_golden(const Course& course, const FlightPlan& plan,
                           const ReferenceFlight& golden) {
-  InProcessHost builtin(open_builtin(), {}, course);
-  const auto checked = evaluate_with(course, plan, golden, builtin, {});
+  const auto checked = evaluate_with(course, plan, golden, *open_reference(course), {});
   if (!checked) return tl::unexpected(checked.error());
   if (checked->verdict == Verdict::pass) return {};
   return fail_at(golden.rows.source,
@@ -253,50 +249,13 @@ Result<VectorResult> evaluate_from_one_period_on(const Course& course, FlightPla
 
 }  // namespace
 
-namespace {
-
-// The error of a golden of a flight; empty if it can judge one.
-std::string complaint_about(const GoldenTrace& golden, const Case& the_case) {
-  const ChannelSet needed =
-      channels_of(the_case.module, "out/") | ChannelSet().set(timestamp_channel);
-  if (const ChannelSet missing = needed & ~golden.outputs.present; missing.any()) {
-    return fmt::format("has no column {}", channels()[missing._Find_first()].name);
-  }
-  if (!golden.horizon_s || !std::isfinite(*golden.horizon_s) || *golden.horizon_s < 0) {
-    return "has no horizon_s that is a time";
-  }
-  for (const Metric& metric : the_case.flight->metrics) {
-    if (!golden.metrics.contains(metric.name)) return "has no metric/" + metric.name;
-  }
-  const auto& samples = golden.outputs.samples;
-  const bool increase = std::is_sorted(
-      samples.begin(), samples.end(),
-      [](const Sample& a, const Sample& b) { return a.in.timestamp <= b.in.timestamp; });
-  return increase ? "" : "has timestamps that do not increase";
-}
-
-Result<ReferenceFlight> flight_of(const Golden& golden, const Case& the_case,
-                                  const RunConfiguration& configuration, const Vehicle& vehicle) {
-  if (auto same = golden.check_vehicle(vehicle); !same) return tl::unexpected(same.error());
-  const auto trace = golden.trace(configuration);
-  if (!trace) return tl::unexpected(trace.error());
-  if (const std::string wrong = complaint_about(**trace, the_case); !wrong.empty()) {
-    return fail_at(golden.file().string(),
-                   fmt::format("at {}, {}; bless it anew, or restore it from version control",
-                               configuration.label(), wrong));
-  }
-  return ReferenceFlight{(*trace)->outputs, *(*trace)->horizon_s, (*trace)->metrics};
-}
-
-}  // namespace
-
 Result<VectorResult> evaluate_flight(const Case& the_case, const RunConfiguration& configuration,
                                      const VehicleModel& vehicle_model, const Golden& golden,
                                      PortHost& host, const std::filesystem::path& saved_traces) {
-  const auto reference = flight_of(golden, the_case, configuration, vehicle_model.vehicle());
+  const auto reference = expected_flight(the_case, configuration, vehicle_model.vehicle(), golden);
   if (!reference) return tl::unexpected(reference.error());
   const Course course{&the_case, &vehicle_model};
-  const FlightPlan plan{configuration, flight_timing(the_case, configuration.rate)};
+  const auto plan = FlightPlan::as_scheduled(the_case, configuration);
   if (!has_fixed_step(host.declarations(), the_case)) {
     auto result = evaluate_with(course, plan, *reference, host, saved_traces);
     if (!result || !fails_by_golden(*result)) return result;

@@ -10,8 +10,7 @@
 #include <fmt/format.h>
 
 #include "harness/golden/recorded.hpp"
-#include "harness/host/in_process_host.hpp"
-#include "harness/port/builtin.hpp"
+#include "harness/golden/reference.hpp"
 #include "harness/port/profiles.hpp"
 #include "harness/verify/judge.hpp"
 
@@ -221,8 +220,8 @@ class LogJudge {
 
   // Empty if the reference has a fault, for example because it does not have the profile.
   std::optional<std::vector<TopicAgreement>> of_reference(Known most) {
-    InProcessHost host(open_builtin());
-    Replayed reference(host, subject_, as_flown_);
+    const auto host = open_reference();
+    Replayed reference(*host, subject_, as_flown_);
     LogAgreement agreement(log_.trace.present, limits_);
     std::optional<PortFault> fault;
     for_each_part_of(*ticks_, most_ticks_, [&](const Trace& logged, std::size_t at, bool is_last) {
@@ -237,8 +236,8 @@ class LogJudge {
 
   // Sets the topics and the ticks, unless the port has a fault.
   std::optional<PortFault> drive(PortHost& port, const Comparable& comparable, LogResult& found) {
-    InProcessHost host(open_builtin());
-    Replayed reference(host, subject_, as_flown_), judged(port, subject_, of_port_);
+    const auto host = open_reference();
+    Replayed reference(*host, subject_, as_flown_), judged(port, subject_, of_port_);
     LogAgreement agreement(log_.trace.present, limits_);
     std::optional<PortFault> fault;
     const std::size_t ticks = for_each_part_of(

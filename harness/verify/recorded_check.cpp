@@ -8,8 +8,8 @@
 
 #include "harness/compare/compare.hpp"
 #include "harness/core/file.hpp"
-#include "harness/golden/expected_outputs.hpp"
 #include "harness/golden/recorded.hpp"
+#include "harness/golden/reference.hpp"
 #include "harness/trace/provenance.hpp"
 
 namespace attest {

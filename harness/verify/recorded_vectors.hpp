@@ -14,7 +14,7 @@
 namespace attest {
 
 // Writes the inputs of the vectors that a recorded port can run, a file each, and adds them to the
-// folder's manifest, which is made if there is none (recording/manifest.hpp). Leaves out flights
+// folder's manifest, which is made if there is none (host/manifest.hpp). Leaves out flights
 // (their inputs depend on the outputs), cases with two instances, and vectors that do not keep
 // `fixed_step`. The provenance.toml next to the files has the mixer definitions. Returns the
 // number of files. Errors: a file cannot be read or written; the manifest has another fixed step;

@@ -1,12 +1,8 @@
 #include "harness/verify/reference_comparison.hpp"
 
-#include <memory>
 #include <span>
 
-#include <fmt/format.h>
-
-#include "harness/loop/unit_driver.hpp"
-#include "harness/port/builtin.hpp"
+#include "harness/golden/reference.hpp"
 
 namespace attest {
 namespace {
@@ -62,26 +58,19 @@ class Answering {
 Result<ReferenceComparison> compare_with_reference(const Trace& flown, const std::string& profile,
                                                    const Tolerances& tolerances,
                                                    std::optional<int> fraction_bits) {
-  const std::unique_ptr<Port> reference = open_builtin();
-  const Module module = module_of(flown.present);
-  const std::unique_ptr<Unit> unit = reference->create_unit(module, profile, "");
-  if (!unit) return fail(fmt::format("the reference has no profile `{}`", profile));
-  UnitDriver law(*unit, module);
-  const auto meter = margin_meter({profile, module});
+  const ModuleUnderTest subject{profile, module_of(flown.present)};
+  const auto meter = margin_meter(subject);
   Answering answering(flown, tolerances);
-  PendingChanges changes(flown.parameters);
-  for (std::size_t tick = 0; tick < flown.samples.size(); ++tick) {
-    const Sample& got = flown.samples[tick];
-    const auto at_tick = changes.take_until(tick);
-    const auto decision =
-        meter ? made_by_rounding(meter->step(at_tick, got), fraction_bits) : std::nullopt;
-    if (decision) answering.decided_by_rounding(*decision, tick);
-    Sample want = got;
-    if (const auto fault = law.step(tick, at_tick, want)) {
-      return fail(fmt::format("the reference, at tick {}: {}", tick, fault->what));
-    }
-    answering.add(got, want, at_tick);
-  }
+  const auto compared = for_each_reference_output(
+      subject, flown,
+      [&](std::size_t tick, std::span<const ParameterChange> changes, const Sample& got,
+          const Sample& want) {
+        const auto decision =
+            meter ? made_by_rounding(meter->step(changes, got), fraction_bits) : std::nullopt;
+        if (decision) answering.decided_by_rounding(*decision, tick);
+        answering.add(got, want, changes);
+      });
+  if (!compared) return tl::unexpected(compared.error());
   return answering.finish(flown.samples.size());
 }
 

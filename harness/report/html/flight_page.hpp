@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "harness/host/declarations.hpp"
-#include "harness/measure/simulate.hpp"
+#include "harness/verify/simulate.hpp"
 
 namespace attest {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/realtime/histogram.hpp"
+#include "harness/core/histogram.hpp"
 #include "harness/report/html/plot_page.hpp"
 
 namespace attest {

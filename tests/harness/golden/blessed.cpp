@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "harness/casefile/stimulus.hpp"
-#include "harness/golden/expected_outputs.hpp"
 #include "harness/golden/make_golden.hpp"
+#include "harness/golden/reference.hpp"
 
 namespace attest {
 
@@ -21,7 +21,7 @@ std::vector<Trace> answers_of_reference(const Case& the_case) {
 
 MadeGolden made_by_reference(const Case& the_case) {
   VehicleModels none("");
-  Reference reference = Reference::own();
+  GoldenSource source = GoldenSource::own();
   auto made = make_golden(the_case, reference, none, [] { return false; });
   EXPECT_TRUE(made) << made.error().to_string();
   return made ? *std::move(made) : MadeGolden{};

@@ -73,8 +73,7 @@ class CountingCascade final : public Port {
 tl::expected<int, PortFault> flown_by(ModuleSet made, int at_once) {
   const Case hover = *parse_case(source_folder / "cases/px4-v1.16.0/flight/hover.toml");
   CountingCascade port(made, at_once);
-  const auto reference = open_builtin();
-  const auto units = units_for(hover, port, *reference);
+  const auto units = units_for(hover, port);
   if (!units) return tl::unexpected(units.error());
   EXPECT_TRUE(units->unit && units->attitude_unit);
   return port.living;

@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 
 #include "harness/loop/case_timing.hpp"
-#include "tests/harness/measure/given_host.hpp"
 #include "tests/harness/realtime/flights.hpp"
 #include "tests/harness/times.hpp"
+#include "tests/harness/verify/given_host.hpp"
 
 namespace attest {
 namespace {

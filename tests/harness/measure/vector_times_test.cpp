@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/harness/casefile/case_files.hpp"
-#include "tests/harness/measure/given_host.hpp"
 #include "tests/harness/times.hpp"
+#include "tests/harness/verify/given_host.hpp"
 
 namespace attest {
 namespace {

@@ -9,8 +9,8 @@
 #include "harness/verify/evaluate.hpp"
 #include "tests/harness/casefile/case_files.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
-#include "tests/harness/measure/given_host.hpp"
 #include "tests/harness/times.hpp"
+#include "tests/harness/verify/given_host.hpp"
 
 namespace attest {
 namespace {

@@ -42,7 +42,7 @@ Case cascade_case(const char* name, double duration_s) {
 
 PortUnits units_of(const Case& the_case) {
   const auto port = open_builtin();
-  return *units_for(the_case, *port, *port);
+  return *units_for(the_case, *port);
 }
 
 LiveFlight flown(const Case& the_case, const std::function<bool()>& stop) {

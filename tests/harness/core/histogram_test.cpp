@@ -1,4 +1,4 @@
-#include "harness/realtime/histogram.hpp"
+#include "harness/core/histogram.hpp"
 
 #include <algorithm>
 #include <vector>

@@ -1,5 +1,5 @@
 // A simulated flight, by a host whose answers the test gives: verdict, metrics and file.
-#include "harness/measure/simulate.hpp"
+#include "harness/verify/simulate.hpp"
 
 #include <cmath>
 #include <limits>
@@ -12,9 +12,9 @@
 #include "harness/trace/csv.hpp"
 #include "harness/ulog/trace_log.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
-#include "tests/harness/measure/given_host.hpp"
 #include "tests/harness/realtime/flights.hpp"
 #include "tests/harness/times.hpp"
+#include "tests/harness/verify/given_host.hpp"
 
 namespace attest {
 namespace {

@@ -1,4 +1,4 @@
-#include "harness/measure/simulate.hpp"
+#include "harness/verify/simulate.hpp"
 
 #include <utility>
 
