@@ -22,7 +22,7 @@ std::vector<Trace> answers_of_reference(const Case& the_case) {
 MadeGolden made_by_reference(const Case& the_case) {
   VehicleModels none("");
   GoldenSource source = GoldenSource::own();
-  auto made = make_golden(the_case, reference, none, [] { return false; });
+  auto made = make_golden(the_case, source, none, [] { return false; });
   EXPECT_TRUE(made) << made.error().to_string();
   return made ? *std::move(made) : MadeGolden{};
 }

@@ -58,7 +58,7 @@ class LiveCascadeTest : public testing::Test {
  protected:
   LiveUnitRecord run(Module module, Unit& unit) {
     const Case scripted = case_.of_module(module);
-    UnitTask task(scripted, rate_.unit, vehicle_, unit, {});
+    UnitTask task(scripted, rate_.motor_unit, vehicle_, unit, {});
     LiveUnit live(scripted, rate_, task, clock_, links_, 8);
     live.run();
     return live.take_record();
