@@ -1,5 +1,6 @@
 #include "harness/cli/arguments.hpp"
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -9,16 +10,11 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "harness/cli/command.hpp"
+#include "harness/cli/command_line.hpp"
 #include "harness/cli/completion.hpp"
 #include "harness/cli/man_page.hpp"
 #include "harness/cli/outputs.hpp"
-#include "harness/cli/run_arguments.hpp"
-#include "harness/cli/shared_arguments.hpp"
-#include "harness/cli/suite_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
-#include "harness/cli/timing_arguments.hpp"
-#include "harness/cli/trace_arguments.hpp"
 #include "harness/cli/wrong_arguments.hpp"
 #include "harness/core/version.hpp"
 
@@ -43,100 +39,16 @@ constexpr const char* footer =
     "Exit codes: 0 no failure, 1 a failure, 2 wrong usage or environment, or no result,\n"
     "130 interrupted by Ctrl-C.\n";
 
-void add_sim(CLI::App& app, const Globals& globals, Action& action) {
-  auto options = std::make_shared<SimOptions>();
-  CLI::App* command = app.add_subcommand(
-      "sim",
-      "Fly one case in simulation with a port, and write a trace or a page of the "
-      "flight");
-  command
-      ->add_option("case", options->case_name,
-                   "The flight: the name or id of a case, or a case file")
-      ->type_name("CASE");
-  command
-      ->add_option("--rate", options->rate,
-                   "Loop rate [Hz]; for v1.14 to v1.16 the rates of both units, such as 250:1000")
-      ->type_name("HZ");
-  command
-      ->add_option("--timing", options->timing,
-                   "Fly the flight of this file from --record-timing again, at the recorded "
-                   "times; it replaces CASE, --rate, --vehicle and --plant")
-      ->type_name("F");
-  add_plant(*command, options->vehicle, options->plant);
-  command->get_option("--plant")->description(
-      "Plant: `mujoco` or `ode`, or `all` for a page (--html) with the flights on "
-      "both; default: the first plant of the case");
-  add_port(*command, globals, options->host);
-  command
-      ->add_option("--out", options->out,
-                   "Write the trace as CSV, or as a ULog if the name ends with .ulg; for v1.14 to "
-                   "v1.16, F.csv has the rate unit and F.attitude_unit.csv the attitude unit")
-      ->type_name("F");
-  add_page(*command, options->html,
-           "a page with plots of the flight and an animation of the attitude");
-  add_timeout(*command, options->host.timeout_s);
-  add_examples(*command, {{"attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv",
-                           "hover with the Iris on MuJoCo, and write a trace"},
-                          {"attest sim gust --rate 500 --vehicle hexa --plant ode --out flown.csv",
-                           "another vehicle and another plant"},
-                          {"attest sim flip_150_level --rate 250 --html flight.html",
-                           "the flight as a page with plots"},
-                          {"attest sim gust --rate 250 --plant all --html flight.html",
-                           "the flights on both plants in the same plots"}});
-  command->callback([options, &globals, &action] {
-    action = [=, &globals] { return sim_command(*options, globals); };
-  });
-}
-
-void add_doctor(CLI::App& app, const Globals& globals, Action& action) {
-  auto options = std::make_shared<DoctorOptions>();
-  CLI::App* command = app.add_subcommand(
-      "doctor", "Check the machine, the suite, the reference and a port, and report errors");
-  add_port(*command, globals, options->host);
-  add_timeout(*command, options->host.timeout_s);
-  add_examples(*command, {{"attest doctor --port lib:./libmine.so",
-                           "the machine, the suite, the reference and your port"}});
-  command->callback([options, &globals, &action] {
-    action = [=, &globals] { return doctor_command(*options, globals); };
-  });
-}
-
-void add_smoke(CLI::App& app, const Globals& globals, Action& action) {
-  auto options = std::make_shared<SmokeOptions>();
-  CLI::App* command = app.add_subcommand(
-      "smoke",
-      "Check step by step whether a port follows attest_unit.h, or PROTOCOL.md if it "
-      "is a program; its law is not judged");
-  add_port(*command, globals, options->host);
-  add_timeout(*command, options->host.timeout_s);
-  add_examples(*command,
-               {{"attest smoke --port \"proc:python3 my_port.py\"", "the exchange with a program"},
-                {"attest smoke --port lib:./libmine.so", "the functions of a shared library"}});
-  command->callback([options, &globals, &action] {
-    action = [=, &globals] { return smoke_command(*options, globals); };
-  });
-}
-
-void add_new_port(CLI::App& app, const Globals& globals, Action& action) {
-  auto options = std::make_shared<NewPortOptions>();
-  CLI::App* command = app.add_subcommand(
-      "new-port", "Make a folder with a complete port to start from, and with CI jobs");
-  command->add_option("folder", options->folder, "The new folder")->type_name("DIR")->required();
-  command
-      ->add_option("--lang", options->language,
-                   "Port to start from: `c`, `cpp`, `python`, `rust` or `simulink` for v1.5.5 and "
-                   "v1.3.4; `c_cascade` or `python_cascade` for v1.14 to v1.16")
-      ->type_name("LANG")
-      ->required();
-  add_examples(
-      *command,
-      {{"attest new-port mine --lang c", "a port in C; mine/check builds and runs it"},
-       {"attest new-port mine --lang c_cascade", "a port in C of v1.14 to v1.16"},
-       {"attest new-port mine --lang simulink", "a wrapper for C code that Simulink generated"}});
-  command->callback([options, &globals, &action] {
-    action = [=, &globals] { return new_port_command(*options, globals); };
-  });
-}
+// Shows the negation of a flag as `--no-stack`; CLI11 shows `--no-stack{false}`.
+class PlainFlagNames final : public CLI::Formatter {
+ public:
+  std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
+    constexpr std::string_view value = "{false}";
+    std::string name = CLI::Formatter::make_option_name(option, is_positional);
+    const auto at = name.find(value);
+    return at == std::string::npos ? name : name.erase(at, value.size());
+  }
+};
 
 struct HelpOptions {
   std::string command, completion, man;
@@ -165,39 +77,28 @@ int show_help(const CLI::App& app, const HelpOptions& options, const Globals& gl
   return exit_ok;
 }
 
-void add_help(CLI::App& app, const Globals& globals, Action& action) {
+void add_help(const CommandLine& line) {
   auto options = std::make_shared<HelpOptions>();
-  CLI::App* command = app.add_subcommand("help", "Show the options and examples of a command");
-  command->add_option("command", options->command, "The command; default: show all commands")
-      ->type_name("COMMAND");
+  const Command command = line.add("help", "Show the options and examples of a command");
+  command.option("command", options->command, "The command; default: show all commands")
+      .type("COMMAND");
   command
-      ->add_option("--completion", options->completion,
-                   "Print the completion script for `bash` or `zsh`")
-      ->type_name("KIND")
-      ->check(CLI::IsMember({"bash", "zsh"}));
-  command->add_option("--man", options->man, "Write the manual pages to this folder")
-      ->type_name("DIR");
-  add_examples(*command, {{"attest help run", "the same as `attest run --help`"},
-                          {"source <(attest help --completion bash)",
-                           "completion in this shell, unless the package installed it"}});
-  command->callback([options, &app, &globals, &action] {
-    action = [=, &app, &globals] { return show_help(app, *options, globals); };
-  });
+      .option("--completion", options->completion,
+              "Print the completion script for `bash` or `zsh`")
+      .type("KIND")
+      .one_of({"bash", "zsh"});
+  command.option("--man", options->man, "Write the manual pages to this folder").type("DIR");
+  command.examples({{"attest help run", "the same as `attest run --help`"},
+                    {"source <(attest help --completion bash)",
+                     "completion in this shell, unless the package installed it"}});
+  command.runs([options, line] { return show_help(line.app, *options, line.globals); });
 }
 
-void add_commands(CLI::App& app, const Globals& globals, Action& action) {
-  add_run_command(app, globals, action);
-  add_merge_command(app, globals, action);
-  add_sim(app, globals, action);
-  add_timing_commands(app, globals, action);
-  add_trace_commands(app, globals, action);
-  add_suite_commands(app, globals, action);
-  add_new_port(app, globals, action);
-  add_doctor(app, globals, action);
-  add_smoke(app, globals, action);
-  add_help(app, globals, action);
-  app.footer(footer);  // last: commands copy the footer that exists when they are added
-}
+// In the order of --help.
+constexpr std::array commands{add_run,        add_merge,    add_sim,    add_stress, add_sweep,
+                              add_sweep_rate, add_schedule, add_time,   add_replay, add_record,
+                              add_compare,    add_plot,     add_faults, add_list,   add_vectors,
+                              add_bless,      add_new_port, add_doctor, add_smoke,  add_help};
 
 // Returns the exit code if the command line is wrong, or only asks for help or the version. Empty:
 // the command must run.
@@ -241,7 +142,7 @@ void hide_suites(const Globals& globals) {
 
 int run_command_line(int argc, char** argv) {
   CLI::App app(description, "attest");
-  use_plain_flag_names(app);
+  app.formatter(std::make_shared<PlainFlagNames>());  // first: commands copy it
   app.set_version_flag("--version", fmt::format("attest {}", version));
   app.require_subcommand(1);
   app.fallthrough();
@@ -257,7 +158,8 @@ int run_command_line(int argc, char** argv) {
       ->allow_extra_args(false);
   app.add_flag("-q,--quiet", globals.quiet, "Print only failures and errors");
   Action action;
-  add_commands(app, globals, action);
+  for (const auto add : commands) add({app, globals, action});
+  app.footer(footer);  // last: commands copy the footer that exists when they are added
   const auto ended = parse(app, argc, argv);
   if (ended) return *ended;
   hide_suites(globals);

@@ -10,7 +10,7 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include "harness/cli/command.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/interrupt.hpp"
@@ -21,6 +21,14 @@
 
 namespace attest::cli {
 namespace {
+
+struct BlessOptions {
+  SelectionOptions select;
+  HostOptions host;
+  std::string port;  // its outputs become the goldens; empty: those of attest's reference
+  std::string reason;
+  bool yes = false;
+};
 
 // The error ends the command; the destructor of PendingGoldens removes the files written so far.
 Result<void> check_not_interrupted() {
@@ -204,8 +212,6 @@ Result<int> bless_selected(const BlessOptions& options, const Globals& globals) 
   return exit_ok;
 }
 
-}  // namespace
-
 int bless_command(const BlessOptions& options, const Globals& globals) {
   if (options.reason.empty()) {
     return report_error({"say why with --reason \"...\"; it is kept in provenance.toml"});
@@ -221,6 +227,34 @@ int bless_command(const BlessOptions& options, const Globals& globals) {
   }
   const auto code = bless_selected(options, globals);
   return code ? *code : report_error(code.error());
+}
+
+}  // namespace
+
+void add_bless(const CommandLine& line) {
+  auto options = std::make_shared<BlessOptions>();
+  const Command command =
+      line.add("bless", "Make new golden traces from the reference, after showing the changes");
+  add_selection(command, options->select);
+  // Hidden: bless_command() refuses it, and says what to use instead.
+  command.find("--exclude").group("");
+  command
+      .option("--reason", options->reason,
+              "Reason of the change, which is stored in provenance.toml (required)")
+      .type("TEXT");
+  command.flag("--yes", options->yes, "Replace the goldens without a question");
+  command
+      .option("--port", options->port,
+              "Make the goldens of --suite DIR from this port; default: from the reference "
+              "of attest")
+      .type("PORT");
+  options->host.barrier = line.globals.barrier;
+  add_timeout(command, options->host.timeout_s);
+  command.examples({{"attest bless --filter 'px4-v1.5.5/tpa/*' --reason \"...\"",
+                     "show the changes, and ask before the goldens are replaced"},
+                    {"attest bless --suite ours --port lib:./ours.so --reason \"our law\"",
+                     "make the goldens of the suite `ours` from your own law"}});
+  command.runs(options, bless_command);
 }
 
 }  // namespace attest::cli

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "harness/cli/command.hpp"
 #include "harness/cli/outputs.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/compare/compare_files.hpp"
 #include "harness/compare/compare_signals.hpp"
 #include "harness/core/file.hpp"
@@ -16,6 +16,15 @@
 
 namespace attest::cli {
 namespace {
+
+struct CompareOptions {
+  std::string got, want;
+  std::string level = "numeric";
+  bool by_time = false;     // compare any signals, at equal times
+  double others = 0;        // the tolerance of signals for which the level has none
+  std::string shift = "0";  // us, or "auto"
+  std::string html;
+};
 
 // The part of a result that the report shows; files have neither port nor case.
 VectorResult as_result(const Comparison& comparison) {
@@ -106,8 +115,6 @@ int compare_by_time(const CompareOptions& options, Level level, bool quiet) {
   return print_by_time(options, found, *shift, quiet);
 }
 
-}  // namespace
-
 int compare_command(const CompareOptions& options, const Globals& globals) {
   const auto level = parse_level(options.level);
   if (!level) return report_error(level.error());
@@ -138,6 +145,43 @@ int compare_command(const CompareOptions& options, const Globals& globals) {
     fmt::print("{}\n", not_compared(comparison.only_got, options.want));
   }
   return exit_ok;
+}
+
+}  // namespace
+
+void add_compare(const CommandLine& line) {
+  auto options = std::make_shared<CompareOptions>();
+  const Command command = line.add("compare", "Compare two traces or flight logs");
+  command.option("got", options->got, "The trace (CSV) or flight log (.ulg) to judge")
+      .type("A")
+      .required();
+  command.option("want", options->want, "The trace or flight log with the expected values")
+      .type("B")
+      .required();
+  command
+      .option("--level", options->level, "How outputs are compared: `exact`, `numeric` or `events`")
+      .type("LEVEL")
+      .shows_default();
+  command.flag("--by-time", options->by_time,
+               "Compare all common signals at equal times; default: only if A or B is a log");
+  command
+      .option("--tolerance", options->others,
+              "By time: allowed difference of signals other than the controller's outputs")
+      .type("X")
+      .at_least_zero()
+      .shows_default();
+  command
+      .option("--shift", options->shift,
+              "By time: move A earlier by this time [us] before the comparison; `auto` "
+              "estimates it")
+      .type("US")
+      .shows_default();
+  add_page(command, options->html,
+           "a page with plots of the signals that differ; only for a comparison by time");
+  command.examples({{"attest compare flown.csv reference.csv", "compare the outputs tick by tick"},
+                    {"attest compare flown.ulg reference.csv --tolerance 1e-3",
+                     "compare all common signals at equal times"}});
+  command.runs(options, compare_command);
 }
 
 }  // namespace attest::cli

@@ -9,8 +9,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "harness/cli/shared_arguments.hpp"
-
 namespace attest::cli {
 namespace {
 
@@ -154,6 +152,11 @@ std::string script_body(const CLI::App& app) {
 constexpr const char* registration = "complete -o default -F _attest attest\n";
 
 }  // namespace
+
+std::string value_name(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  return type.substr(0, std::min(type.find(':'), type.size()));
+}
 
 std::string bash_completion(const CLI::App& app) { return script_body(app) + registration; }
 

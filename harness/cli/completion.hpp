@@ -5,9 +5,13 @@
 
 namespace CLI {
 class App;
+class Option;
 }  // namespace CLI
 
 namespace attest::cli {
+
+// "FLOAT": the type of an option's value, without the checks that CLI11 appends.
+std::string value_name(const CLI::Option& option);
 
 // The script for bash. It completes commands, options, fixed values, common rates, and the names of
 // groups, cases, profiles and vehicles, which `attest list` prints. For all else the shell

@@ -11,8 +11,8 @@
 #include "controller/elementary/fixed_arguments.hpp"
 #include "controller/mc_att_control/profile.hpp"
 #include "harness/casefile/select.hpp"
-#include "harness/cli/command.hpp"
 #include "harness/cli/examination.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/version.hpp"
 #include "harness/golden/golden.hpp"
@@ -22,6 +22,10 @@
 
 namespace attest::cli {
 namespace {
+
+struct DoctorOptions {
+  HostOptions host;
+};
 
 void examine_arithmetic(Examination& examination) {
   // volatile: this machine must compute the product now, not the compiler.
@@ -119,8 +123,6 @@ void examine_limits(const DoctorOptions& options, Examination& examination) {
                                    fmt::join(missing, ", ")));
 }
 
-}  // namespace
-
 int doctor_command(const DoctorOptions& options, const Globals& globals) {
   Examination examination;
   examination.good("attest", fmt::format("{}, built by {}", version, compiler()));
@@ -137,6 +139,19 @@ int doctor_command(const DoctorOptions& options, const Globals& globals) {
   examine_limits(options, examination);
   examine_port(options.host, examination);
   return examination.all_good() ? exit_ok : exit_usage;
+}
+
+}  // namespace
+
+void add_doctor(const CommandLine& line) {
+  auto options = std::make_shared<DoctorOptions>();
+  const Command command = line.add(
+      "doctor", "Check the machine, the suite, the reference and a port, and report errors");
+  add_port(command, options->host);
+  add_timeout(command, options->host.timeout_s);
+  command.examples({{"attest doctor --port lib:./libmine.so",
+                     "the machine, the suite, the reference and your port"}});
+  command.runs(options, doctor_command);
 }
 
 }  // namespace attest::cli

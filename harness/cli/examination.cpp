@@ -51,10 +51,4 @@ void examine_port(const HostOptions& options, Examination& examination) {
   }
 }
 
-int smoke_command(const SmokeOptions& options, const Globals&) {
-  Examination examination;
-  examine_port(options.host, examination);
-  return examination.all_good() ? exit_ok : exit_failed;
-}
-
 }  // namespace attest::cli

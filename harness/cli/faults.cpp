@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "harness/cli/command.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/interrupt.hpp"
 #include "harness/core/suggestion.hpp"
@@ -17,6 +17,16 @@
 
 namespace attest::cli {
 namespace {
+
+struct FaultOptions {
+  std::vector<std::string> ids;       // empty: all
+  std::vector<std::string> profiles;  // empty: all
+  bool list = false;
+  bool diagnose = false;
+  std::optional<int> fraction_bits;
+  std::string level;  // of all cases; empty: numeric, and exact for cases of that level only
+  int jobs = 1;
+};
 
 using faults::Fault;
 
@@ -194,8 +204,6 @@ std::vector<const Fault*> detectable(std::vector<const Fault*> faults,
   return faults;
 }
 
-}  // namespace
-
 int faults_command(const FaultOptions& options, const Globals& globals) {
   const auto faults = chosen(options);
   if (!faults) return report_error(faults.error());
@@ -220,6 +228,49 @@ int faults_command(const FaultOptions& options, const Globals& globals) {
     worst = std::max(worst, *code);
   }
   return worst;
+}
+
+}  // namespace
+
+void add_faults(const CommandLine& line) {
+  auto options = std::make_shared<FaultOptions>();
+  const Command command =
+      line.add("faults", "Measure which faults of the catalogue the suite catches");
+  const Option ids =
+      command.option("fault", options->ids, "Only these faults; default: all").type("ID");
+  command
+      .option("--profile", options->profiles,
+              "Only these versions of the law, separated by commas; default: all")
+      .type("PROFILE")
+      .separated_by_commas()
+      .one_each_time();
+  command.flag("--list", options->list, "List the faults, and run nothing");
+  const Option bits =
+      command
+          .option("--fraction-bits", options->fraction_bits,
+                  "Use the tolerances of a port in fixed point with this number of fraction "
+                  "bits; default: those of floating point")
+          .range(20, 32);
+  const Option level =
+      command
+          .option("--level", options->level,
+                  "Judge all cases at this level, exact, numeric or events, and print how many "
+                  "faults it catches; default: numeric, and exact for the cases that are "
+                  "compared at that level only")
+          .type("LEVEL");
+  command
+      .flag("--diagnose", options->diagnose,
+            "Measure instead which faults the diagnosis names, and for which the reports name the "
+            "stage")
+      .excludes(bits)
+      .excludes(ids)
+      .excludes(level);
+  add_jobs(command, options->jobs, "Number of faults that run at the same time");
+  command.examples({{"attest faults", "measure which faults the open-loop cases catch"},
+                    {"attest faults --level events tpa-missing", "the same at one level"},
+                    {"attest faults --list --profile px4-v1.3.4",
+                     "list the catalogue of one version of the law"}});
+  command.runs(options, faults_command);
 }
 
 }  // namespace attest::cli

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "harness/cli/command.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/cli/vectors.hpp"
 #include "harness/golden/suite_margins.hpp"
 
 namespace attest::cli {
@@ -33,7 +33,7 @@ void print_nearest(const SuiteMargins& margins) {
 
 }  // namespace
 
-int lint_command(const VectorOptions& options, const Globals& globals) {
+int lint(const VectorOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
   const auto cases = options.select.cases_in(suite->case_folders());

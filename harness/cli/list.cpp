@@ -9,7 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "harness/casefile/flight_mode.hpp"
-#include "harness/cli/command.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/suggestion.hpp"
 #include "harness/plant/vehicle.hpp"
@@ -18,6 +18,11 @@
 
 namespace attest::cli {
 namespace {
+
+struct ListOptions {
+  SelectionOptions select;
+  bool groups = false, parameters = false, channels = false, modes = false, vehicles = false;
+};
 
 // The requested profiles; by default all.
 Result<std::vector<const ProfileInfo*>> chosen_profiles(const std::vector<std::string>& names) {
@@ -163,8 +168,6 @@ Result<void> list_vehicles(const std::filesystem::path& models) {
   return {};
 }
 
-}  // namespace
-
 int list_command(const ListOptions& options, const Globals& globals) {
   if (options.parameters) {
     const auto profiles = chosen_profiles(options.select.profiles);
@@ -189,6 +192,27 @@ int list_command(const ListOptions& options, const Globals& globals) {
   if (!cases) return report_error(cases.error());
   options.groups ? list_groups(*cases) : list_cases(*cases);
   return exit_ok;
+}
+
+}  // namespace
+
+void add_list(const CommandLine& line) {
+  auto options = std::make_shared<ListOptions>();
+  const Command command = line.add("list", "List the cases with their reasons, or another table");
+  add_selection(command, options->select);
+  command.flag("--groups", options->groups,
+               "List the groups with their numbers of cases and vectors");
+  command.flag("--parameters", options->parameters, "List the parameters of the law");
+  command.flag("--channels", options->channels,
+               "List the signals (columns of traces) with type, unit and module");
+  command.flag("--flight-modes", options->modes,
+               "List the flight modes and the flags that they set");
+  command.flag("--vehicles", options->vehicles, "List the vehicles with their main data");
+  command.examples(
+      {{"attest list --filter 'tpa/*'", "list the cases of a group with their reasons"},
+       {"attest list --parameters --profile px4-v1.3.4",
+        "list the parameters of one version of the law"}});
+  command.runs(options, list_command);
 }
 
 }  // namespace attest::cli

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "harness/cli/shared_arguments.hpp"
+#include "harness/cli/completion.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/version.hpp"
 

@@ -13,11 +13,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "harness/cli/command.hpp"
 #include "harness/cli/conclude.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/released_suite.hpp"
 #include "harness/cli/run_plan.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/interrupt.hpp"
 #include "harness/core/version.hpp"
@@ -26,6 +26,14 @@
 
 namespace attest::cli {
 namespace {
+
+struct MergeOptions {
+  std::vector<std::string> files;  // JSON reports
+  std::string port;                // for the diagnosis; empty: the port that the reports name
+  int jobs = 1;
+  double timeout_s = default_timeout_s;
+  ReportOptions report;
+};
 
 struct Part {
   std::string file;
@@ -223,8 +231,6 @@ std::optional<HostOptions> host_for(const MergeOptions& options, const Globals& 
   return std::nullopt;
 }
 
-}  // namespace
-
 int merge_command(const MergeOptions& options, const Globals& globals) {
   const auto begin = std::chrono::steady_clock::now();
   note_interrupts();
@@ -252,6 +258,28 @@ int merge_command(const MergeOptions& options, const Globals& globals) {
   report.diagnose = host.has_value();
   return conclude(run, {*cases, host.value_or(HostOptions{}), options.jobs, {}}, report,
                   *std::move(reports), begin, globals);
+}
+
+}  // namespace
+
+void add_merge(const CommandLine& line) {
+  auto options = std::make_shared<MergeOptions>();
+  const Command command = line.add("merge", "Join the JSON reports of the shards of a run");
+  command.option("reports", options->files, "The reports of all shards, in any order")
+      .type("REPORT")
+      .required();
+  command
+      .option("--port", options->port,
+              "Port that the diagnosis runs; default: the port of the reports")
+      .type("PORT");
+  add_jobs(command, options->jobs, "Number of worker processes for the diagnosis");
+  add_timeout(command, options->timeout_s);
+  add_reports(command, options->report);
+  command.examples({{"attest run --port lib:./libmine.so --shard 1/4 --json part1.json",
+                     "run the first of four shards"},
+                    {"attest merge part*.json --json attest.json --junit attest.junit.xml",
+                     "join the reports of all shards"}});
+  command.runs(options, merge_command);
 }
 
 }  // namespace attest::cli

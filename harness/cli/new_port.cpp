@@ -9,15 +9,19 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "harness/cli/command.hpp"
 #include "harness/cli/new_folder.hpp"
 #include "harness/cli/outputs.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/suggestion.hpp"
 #include "harness/process/program.hpp"
 
 namespace attest::cli {
 namespace {
+
+struct NewPortOptions {
+  std::string folder, language;
+};
 
 namespace fs = std::filesystem;
 
@@ -111,8 +115,6 @@ Result<Language> make_port(const NewPortOptions& options, const std::string& sui
   return language;
 }
 
-}  // namespace
-
 int new_port_command(const NewPortOptions& options, const Globals& globals) {
   const auto language = make_port(options, globals.suite);
   if (!language) return report_error(language.error());
@@ -128,6 +130,26 @@ int new_port_command(const NewPortOptions& options, const Globals& globals) {
       "  .github/ and .gitlab-ci.yml there run check in CI; set ATTEST_PACKAGE_URL\n",
       options.folder, language->title);
   return exit_ok;
+}
+
+}  // namespace
+
+void add_new_port(const CommandLine& line) {
+  auto options = std::make_shared<NewPortOptions>();
+  const Command command =
+      line.add("new-port", "Make a folder with a complete port to start from, and with CI jobs");
+  command.option("folder", options->folder, "The new folder").type("DIR").required();
+  command
+      .option("--lang", options->language,
+              "Port to start from: `c`, `cpp`, `python`, `rust` or `simulink` for v1.5.5 and "
+              "v1.3.4; `c_cascade` or `python_cascade` for v1.14 to v1.16")
+      .type("LANG")
+      .required();
+  command.examples(
+      {{"attest new-port mine --lang c", "a port in C; mine/check builds and runs it"},
+       {"attest new-port mine --lang c_cascade", "a port in C of v1.14 to v1.16"},
+       {"attest new-port mine --lang simulink", "a wrapper for C code that Simulink generated"}});
+  command.runs(options, new_port_command);
 }
 
 }  // namespace attest::cli

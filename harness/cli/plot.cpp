@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <fnmatch.h>
 
-#include "harness/cli/command.hpp"
 #include "harness/cli/outputs.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/compare/timed_signals.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/suggestion.hpp"
@@ -17,6 +17,13 @@
 
 namespace attest::cli {
 namespace {
+
+struct PlotOptions {
+  std::vector<std::string> files;
+  std::vector<std::string> signals;  // shell patterns; empty: the outputs, or all if there are none
+  std::string html;  // empty: the name of the first file, with .html, in the working folder
+  bool list = false;
+};
 
 constexpr std::size_t most_signals = 100;
 
@@ -84,8 +91,6 @@ Result<std::vector<std::string>> chosen(const std::vector<std::string>& all,
   return std::vector<std::string>(names.begin(), names.end());
 }
 
-}  // namespace
-
 int plot_command(const PlotOptions& options, const Globals& globals) {
   const std::string first = std::filesystem::path(options.files.front()).stem().string();
   const std::string page = options.html.empty() ? first + ".html" : options.html;
@@ -118,6 +123,36 @@ int plot_command(const PlotOptions& options, const Globals& globals) {
     fmt::print("{}: {} of {} signals\n", page, names->size(), all.size());
   }
   return exit_ok;
+}
+
+}  // namespace
+
+void add_plot(const CommandLine& line) {
+  auto options = std::make_shared<PlotOptions>();
+  const Command command = line.add("plot", "Plot signals of traces and flight logs on one page");
+  command
+      .option("files", options->files,
+              "CSV files with a column `timestamp` [us], or flight logs (.ulg)")
+      .type("TRACE")
+      .required();
+  command
+      .option("--channels", options->signals,
+              "Only signals whose name matches one of these shell patterns; default: the "
+              "controller's outputs, else all, up to 100")
+      .type("GLOB,...")
+      .separated_by_commas()
+      .one_each_time();
+  command.flag("--list", options->list, "List the signals, and write no page");
+  command
+      .option("--html", options->html,
+              "Write this page; default: that of the first file, with .html as its ending, in the "
+              "current folder")
+      .type("F.html")
+      .group(option_group::reports);
+  command.examples({{"attest plot flown.csv flight.ulg --channels 'control_state.*_rate'",
+                     "plot the body rates of two flights"},
+                    {"attest plot flight.ulg --list", "list the signals of a log"}});
+  command.runs(options, plot_command);
 }
 
 }  // namespace attest::cli

@@ -12,6 +12,21 @@
 
 namespace attest::cli {
 
+struct SweepOptions {
+  std::string file;
+  std::string vehicle, plant;  // empty: those of the file
+  HostOptions host;            // with the port `builtin` only the reference flies
+  int jobs = 1;
+  std::uint64_t samples = 0;  // 0: those of the file
+  std::string shard = "1/1";
+  std::string out;                 // folder
+  std::string html;                // file; empty: not written
+  int keep_worst = 0;              // number of flights, of each requirement
+  std::vector<std::string> merge;  // folders of shards to join; empty: fly
+  std::string plan;                // the program that flies the shards; empty: fly here
+  std::size_t shards = 0;          // their number, for `plan`
+};
+
 struct PreparedSweep {
   FlightSampler sampler;
   FlightsOptions flights;

@@ -5,15 +5,20 @@
 
 #include "harness/casefile/parse_limits.hpp"
 #include "harness/casefile/stimulus.hpp"
-#include "harness/cli/command.hpp"
 #include "harness/cli/find_case.hpp"
 #include "harness/cli/outputs.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/ulog/trace_log.hpp"
 #include "harness/verify/fixed_step.hpp"
 
 namespace attest::cli {
 namespace {
+
+struct RecordOptions {
+  HostOptions host;
+  std::string case_name, rate, out = "-";
+};
 
 Result<Trace> recorded(const RecordOptions& options, const SuiteFolder& suite) {
   const auto the_case = find_open_loop_case(options.case_name, suite);
@@ -42,11 +47,33 @@ Result<void> record(const RecordOptions& options, const Globals& globals) {
   return write_trace(*std::move(file), *trace);
 }
 
-}  // namespace
-
 int record_command(const RecordOptions& options, const Globals& globals) {
   const auto written = record(options, globals);
   return written ? exit_ok : report_error(written.error());
+}
+
+}  // namespace
+
+void add_record(const CommandLine& line) {
+  auto options = std::make_shared<RecordOptions>();
+  const Command command =
+      line.add("record", "Write the inputs and outputs of a port in one open-loop case as a trace");
+  command.option("case", options->case_name, "The case: its name or id, or a case file")
+      .type("CASE")
+      .required();
+  command.option("--rate", options->rate, "The loop rate [Hz]").type("HZ").required();
+  add_port(command, options->host);
+  command
+      .option("--out", options->out,
+              "Write the trace as CSV, or as a ULog if the name ends with .ulg; `-` is stdout")
+      .type("F")
+      .shows_default();
+  add_timeout(command, options->host.timeout_s);
+  command.examples(
+      {{"attest record px4-v1.5.5/rates/p_alone --rate 250 --port lib:./libmine.so --out "
+        "mine.csv",
+        "write a trace for `attest plot`, `replay` or `compare`"}});
+  command.runs(options, record_command);
 }
 
 }  // namespace attest::cli

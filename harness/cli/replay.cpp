@@ -10,12 +10,12 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "harness/cli/command.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/read_log.hpp"
+#include "harness/cli/replay_inputs.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/version.hpp"
-#include "harness/golden/recorded.hpp"
 #include "harness/report/conclusion.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/html/signals_page.hpp"
@@ -28,69 +28,6 @@
 
 namespace attest::cli {
 namespace {
-
-Result<void> set_parameters(const ReplayOptions& options, RecordedParts& trace) {
-  for (const std::string& parameter : options.parameters) {
-    const auto change = parse_parameter(parameter);
-    if (!change) return tl::unexpected(change.error());
-    if (auto checked = check_parameter(trace.subject(), *change); !checked) {
-      return fail(fmt::format("--param {}: {}", parameter, checked.error().message));
-    }
-    trace.override_parameter(*change);
-  }
-  return {};
-}
-
-Result<RecordedParts> recorded_in(const std::string& file, const ReplayOptions& options) {
-  auto recorded = RecordedParts::open(file, options.profile, options.mixer);
-  if (!recorded) return recorded;
-  if (auto set = set_parameters(options, *recorded); !set) return tl::unexpected(set.error());
-  print_notes(file, recorded->notes());
-  return recorded;
-}
-
-Result<void> check_parameters(const ReplayOptions& options, const FlightLog& log) {
-  for (const std::string& parameter : options.parameters) {
-    const auto change = parse_parameter(parameter);
-    if (!change) return tl::unexpected(change.error());
-    std::string wrong;
-    const auto has_it = [&](const LoggedUnit& unit) {
-      const auto checked = check_parameter({log.profile, unit.module}, *change);
-      if (!checked && wrong.empty()) wrong = checked.error().message;
-      return checked.has_value();
-    };
-    if (std::none_of(log.units.begin(), log.units.end(), has_it)) {
-      return fail(fmt::format("--param {}: {}", parameter, wrong));
-    }
-  }
-  return {};
-}
-
-// The values of --param whose parameter the unit has. REQUIRES: check_parameters() succeeded.
-std::vector<ParameterChange> parameters_of(const ReplayOptions& options, const FlightLog& log,
-                                           const LoggedUnit& unit) {
-  std::vector<ParameterChange> changes;
-  for (const std::string& parameter : options.parameters) {
-    auto change = parse_parameter(parameter);
-    if (change && check_parameter({log.profile, unit.module}, *change)) {
-      changes.push_back(*std::move(change));
-    }
-  }
-  return changes;
-}
-
-// The log, and in it the profile to replay it with.
-Result<FlightLog> log_in(const std::string& file, const ReplayOptions& options) {
-  if (!options.mixer.empty()) return fail_at(file, "is no mixer trace; leave --mixer out");
-  const bool has_page = !options.html.empty();  // which shows the whole log
-  auto log = read_log(file, options.assumed, options.profile, has_page);
-  if (!log) return log;
-  if (auto checked = check_parameters(options, *log); !checked) {
-    return tl::unexpected(checked.error());
-  }
-  print_notes(file, log->notes);
-  return log;
-}
 
 Result<void> check_reports(const ReplayOptions& options, const Globals& globals) {
   if (options.html.empty() && options.json.empty()) return {};
@@ -282,9 +219,10 @@ class Replay {
   std::string page_;
 };
 
-}  // namespace
-
 int replay_command(const ReplayOptions& options, const Globals& globals) {
+  // The outputs in these files are what the port must compute.
+  auto& hidden = globals.barrier->hidden;
+  hidden.insert(hidden.end(), options.files.begin(), options.files.end());
   const auto level = parse_level(options.level);
   if (!level) return report_error(level.error());
   if (auto checked = check_reports(options, globals); !checked)
@@ -297,6 +235,74 @@ int replay_command(const ReplayOptions& options, const Globals& globals) {
     arithmetic = fmt::format(" for fixed point with {} fraction bits", *port->fraction_bits);
   }
   return Replay(held, globals, *level, std::move(arithmetic)).run();
+}
+
+void add_log_options(Command command, ReplayOptions& options) {
+  add_assumed(command, options.assumed);
+  command
+      .option("--within", options.log_limits.within,
+              "Largest difference from a logged value that counts as agreement, in the unit "
+              "of the signal")
+      .type("X")
+      .shows_default()
+      .at_least_zero()
+      .group(option_group::logs);
+  command
+      .option("--at-least", options.log_limits.least_part_within,
+              "Part of the compared samples of a log that must agree")
+      .type("PART")
+      .shows_default()
+      .range(0.0, 1.0)
+      .group(option_group::logs);
+}
+
+// Options that choose the law by which the port is judged.
+void add_law_options(Command command, ReplayOptions& options) {
+  command
+      .option("--profile", options.profile,
+              "Version of the law; default for a trace: that of its provenance.toml, else "
+              "the newest with its unit; default for a log: the release of PX4 that wrote it")
+      .type("PROFILE");
+  command
+      .option("--param", options.parameters, "Set a parameter of the port from the first step on")
+      .type("NAME=VALUE")
+      .one_each_time();
+  command
+      .option("--level", options.level, "How outputs are compared: `exact`, `numeric` or `events`")
+      .type("LEVEL")
+      .shows_default();
+  command
+      .option("--mixer", options.mixer,
+              "Mixer definition of a mixer trace; default: that of its provenance.toml, else "
+              "the geometry in the file name (4x.csv)")
+      .type("TEXT");
+}
+
+}  // namespace
+
+void add_replay(const CommandLine& line) {
+  auto options = std::make_shared<ReplayOptions>();
+  const Command command = line.add("replay",
+                                   "Feed the inputs of recorded traces or flight logs to a "
+                                   "port and compare its outputs with the recorded ones");
+  command.option("files", options->files, "Traces (CSV) or flight logs (.ulg)")
+      .type("FILE")
+      .required();
+  add_port(command, options->host);
+  add_law_options(command, *options);
+  add_log_options(command, *options);
+  add_page(command, options->html, "a page with plots of the outputs; needs a single trace or log");
+  command.option("--json", options->json, "Write the result of each trace and unit as JSON")
+      .type("F.json")
+      .group(option_group::reports);
+  add_timeout(command, options->host.timeout_s);
+  command.examples(
+      {{"attest replay TRACE.csv --port lib:./libmine.so", "compare a port with a recorded trace"},
+       {"attest replay TRACE.csv --param MC_ROLL_P=7",
+        "compare the reference with another value of a parameter"},
+       {"attest replay FLIGHT.ulg --port lib:./libmine.so",
+        "compare a port with the log of a flight"}});
+  command.runs(options, replay_command);
 }
 
 }  // namespace attest::cli

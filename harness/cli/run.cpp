@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include "harness/cli/command.hpp"
 #include "harness/cli/conclude.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/plotted_traces.hpp"
 #include "harness/cli/run_plan.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/interrupt.hpp"
 #include "harness/report/progress.hpp"
@@ -48,9 +48,9 @@ bool run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
   return !interrupted();
 }
 
-}  // namespace
-
 int run_command(const RunOptions& options, const Globals& globals) {
+  // Goldens of earlier runs may be there.
+  if (!options.save_traces.empty()) globals.barrier->hidden.push_back(options.save_traces);
   const auto begin = std::chrono::steady_clock::now();
   note_interrupts();  // before the first request to the port, which may hang
   const auto suite = find_suite(globals.suite);
@@ -81,6 +81,96 @@ int run_command(const RunOptions& options, const Globals& globals) {
   }
   return conclude(run, {plan->cases, plan->host, options.jobs, traces->folder()}, options.report,
                   *std::move(reports), begin, globals);
+}
+
+void add_strictness(Command command, RunOptions& options) {
+  command
+      .option("--level", options.level,
+              "How outputs are compared: `exact` (float32 bits), `numeric` (a tolerance for "
+              "each signal) or `events` (events at most one tick apart, values within wide "
+              "bounds); flights are always judged at `numeric`")
+      .type("LEVEL")
+      .shows_default()
+      .group(option_group::strictness);
+  command
+      .option("--param", options.parameters,
+              "Set a parameter of port and reference in each open-loop case; flights are not "
+              "run")
+      .type("NAME=VALUE")
+      .one_each_time()
+      .group(option_group::strictness);
+  command
+      .option("--expected-failures", options.expected_failures,
+              "Accept the failures that this TOML file lists; the run fails if a listed case "
+              "passes")
+      .type("F")
+      .group(option_group::strictness);
+}
+
+void add_execution(Command command, RunOptions& options) {
+  add_jobs(command, options.jobs, "Number of worker processes");
+  command.flag("--fail-fast", options.fail_fast, "Stop after the first failure")
+      .group(option_group::execution);
+  add_timeout(command, options.host.timeout_s);
+  command
+      .flag("--in-process", options.host.in_process,
+            "Run the port in attest's own process, for a debugger or a sanitizer; the "
+            "result is then partial")
+      .group(option_group::execution);
+}
+
+void add_traces(Command command, RunOptions& options) {
+  command
+      .option("--save-traces", options.save_traces,
+              "Write the outputs of each failing vector (.got.csv), the expected outputs "
+              "(.want.csv) and, except at the level events, the tolerances (.tolerance.csv) "
+              "to this new folder")
+      .type("DIR")
+      .group(option_group::reports);
+  command.find("--write-expected").excludes(command.find("--expected-failures"));
+}
+
+}  // namespace
+
+void add_run(const CommandLine& line) {
+  auto options = std::make_shared<RunOptions>();
+  const Command command =
+      line.add("run", "Run the cases on a port, and compare its outputs with the expected ones");
+  add_port(command, options->host, Ports::any);
+  add_selection(command, options->select);
+  command.option("--shard", options->select.shard, "Run only part I of N of the cases")
+      .type("I/N")
+      .shows_default()
+      .group(option_group::selection);
+  command
+      .option("--rerun-failed", options->select.rerun_failed,
+              "Run only the vectors that failed in this JSON report; give the same --level "
+              "and --param as in that run")
+      .type("REPORT")
+      .group(option_group::selection);
+  command
+      .option("--timing", options->timing,
+              "Run only the flight of this file from --record-timing, at the recorded times")
+      .type("F")
+      .group(option_group::selection);
+  add_strictness(command, *options);
+  add_execution(command, *options);
+  add_reports(command, options->report);
+  add_traces(command, *options);
+  command.examples(
+      {{"attest run", "the built-in reference, all vectors"},
+       {"attest run --port lib:./libmine.so", "your port"},
+       {"attest run --port recorded:DIR",
+        "judge the files in DIR, whose inputs `attest vectors DIR` wrote"},
+       {"attest run --port lib:./libmine.so --level exact --filter 'attitude/*@250hz'",
+        "compare some vectors to the bit"},
+       {"attest run --port lib:./libmine.so --exclude 'flight*/*' --junit attest.junit.xml",
+        "leave out the flights, and write a report for CI"},
+       {"attest run --port lib:./libmine.so --html attest.html",
+        "write a page with plots of the failing vectors"},
+       {"attest run --port lib:./libmine.so --rerun-failed attest.json",
+        "run again what failed in a run with --json attest.json"}});
+  command.runs(options, run_command);
 }
 
 }  // namespace attest::cli

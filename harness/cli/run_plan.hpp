@@ -14,6 +14,19 @@
 
 namespace attest::cli {
 
+struct RunOptions {
+  SelectionOptions select;
+  HostOptions host;
+  int jobs = 1;
+  bool fail_fast = false;
+  std::vector<std::string> parameters;  // NAME=VALUE
+  std::string level = "numeric";
+  ReportOptions report;
+  std::string expected_failures;
+  std::string timing;       // file; empty: the times of the cases
+  std::string save_traces;  // folder; empty: not saved
+};
+
 // The whole run, complete and checked before the first vector runs.
 struct RunPlan {
   RunResult run;

@@ -3,9 +3,9 @@
 #include "harness/casefile/parse_limits.hpp"
 #include "harness/casefile/stimulus.hpp"
 #include "harness/casefile/task_set.hpp"
-#include "harness/cli/command.hpp"
 #include "harness/cli/find_case.hpp"
 #include "harness/cli/outputs.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/loop/case_timing.hpp"
 #include "harness/loop/scheduled_timing.hpp"
@@ -14,6 +14,14 @@
 
 namespace attest::cli {
 namespace {
+
+struct ScheduleOptions {
+  std::string tasks;  // file
+  std::string case_name = "flight/tilt_step_30";
+  std::string vehicle, plant;
+  HostOptions host;
+  std::string record_timing;
+};
 
 // The timing of a flight in which units and estimator run at the times of their simulated jobs.
 FlightTiming timing_of(const TaskSet& set, const std::vector<std::vector<TaskJob>>& jobs) {
@@ -78,8 +86,6 @@ Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder
   return plan;
 }
 
-}  // namespace
-
 int schedule_command(const ScheduleOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
@@ -112,6 +118,31 @@ int schedule_command(const ScheduleOptions& options, const Globals& globals) {
     }
   }
   return exit_ok;
+}
+
+}  // namespace
+
+void add_schedule(const CommandLine& line) {
+  auto options = std::make_shared<ScheduleOptions>();
+  const Command command =
+      line.add("schedule",
+               "Simulate how other tasks delay the loop on one or two CPUs with fixed "
+               "priorities, and fly with these delays");
+  command.option("tasks", options->tasks, "The task file, with [task.unit] and the other tasks")
+      .type("TASKS.toml")
+      .required();
+  add_case(command, options->case_name);
+  add_plant(command, options->vehicle, options->plant);
+  add_port(command, options->host);
+  command
+      .option("--record-timing", options->record_timing,
+              "Write the times of all ticks, for `run --timing` and `sim --timing`")
+      .type("F")
+      .group(option_group::reports);
+  add_timeout(command, options->host.timeout_s);
+  command.examples({{"attest schedule TASKS.toml --port lib:./libmine.so",
+                     "print the worst response times, and fly with the delays"}});
+  command.runs(options, schedule_command);
 }
 
 }  // namespace attest::cli

@@ -1,30 +1,18 @@
 #include "harness/cli/shared_arguments.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <string>
-#include <string_view>
 #include <thread>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "harness/port/port.hpp"
+#include "harness/report/report_format.hpp"
 #include "harness/ulog/flight_log.hpp"
 
 namespace attest::cli {
 namespace {
-
-class PlainFlagNames final : public CLI::Formatter {
- public:
-  std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
-    constexpr std::string_view value = "{false}";
-    std::string name = CLI::Formatter::make_option_name(option, is_positional);
-    const auto at = name.find(value);
-    return at == std::string::npos ? name : name.erase(at, value.size());
-  }
-};
 
 // The default assumptions for the attitude unit and the rate unit together.
 std::string assumed_by_default_of_units() {
@@ -37,30 +25,17 @@ std::string assumed_by_default_of_units() {
 
 }  // namespace
 
-std::string value_name(const CLI::Option& option) {
-  const std::string type = option.get_type_name();
-  return type.substr(0, std::min(type.find(':'), type.size()));
-}
-
-void use_plain_flag_names(CLI::App& app) { app.formatter(std::make_shared<PlainFlagNames>()); }
-
-void add_examples(CLI::App& command, std::initializer_list<Example> examples) {
-  std::string text = "\nExamples:\n";
-  for (const auto& [line, what] : examples) text += fmt::format("  {}\n      {}\n", line, what);
-  command.footer(text);
-}
-
-void add_port(CLI::App& command, const Globals& globals, HostOptions& host, Ports accepted) {
-  host.barrier = globals.barrier;
+void add_port(Command command, HostOptions& host, Ports accepted) {
+  host.barrier = command.globals().barrier;
   const std::string kinds = names_of_port_kinds(accepted == Ports::callable);
-  CLI::Option* const option =
+  const Option option =
       command
-          .add_option("--port", host.port,
-                      fmt::format("Port to run: {}; `builtin` is the reference of attest", kinds))
-          ->type_name("PORT")
-          ->capture_default_str();
+          .option("--port", host.port,
+                  fmt::format("Port to run: {}; `builtin` is the reference of attest", kinds))
+          .type("PORT")
+          .shows_default();
   if (accepted == Ports::any) return;
-  option->check([](const std::string& given) -> std::string {
+  option.check([](const std::string& given) -> std::string {
     if (kind_of(given).is_callable()) return "";
     return fmt::format(
         "{}: this command must call the port, and the outputs of a recorded port are files; use "
@@ -69,58 +44,62 @@ void add_port(CLI::App& command, const Globals& globals, HostOptions& host, Port
   });
 }
 
-void add_timeout(CLI::App& command, double& timeout_s) {
+void add_timeout(Command command, double& timeout_s) {
   command
-      .add_option("--timeout", timeout_s,
-                  "Limit for each answer of the port [s]: a library answers with a whole trace, "
-                  "a program with a step or a batch of steps. Counts the CPU time of the port's "
-                  "processes; they may sleep three times as long")
-      ->check(CLI::Range(0.1, 86400.0))
-      ->capture_default_str()
-      ->group(option_group::execution);
+      .option("--timeout", timeout_s,
+              "Limit for each answer of the port [s]: a library answers with a whole trace, "
+              "a program with a step or a batch of steps. Counts the CPU time of the port's "
+              "processes; they may sleep three times as long")
+      .range(0.1, 86400.0)
+      .shows_default()
+      .group(option_group::execution);
 }
 
-void add_page(CLI::App& command, std::string& file, const char* what) {
-  command.add_option("--html", file, fmt::format("Write {}", what))
-      ->type_name("F.html")
-      ->group(option_group::reports);
+void add_page(Command command, std::string& file, const char* what) {
+  command.option("--html", file, fmt::format("Write {}", what))
+      .type("F.html")
+      .group(option_group::reports);
 }
 
-void add_jobs(CLI::App& command, int& jobs, const char* what, const char* usual) {
+Option add_jobs(Command command, int& jobs, const char* what, const char* usual) {
   jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  command.add_option("--jobs,-j", jobs, fmt::format("{}; default: {}", what, usual))
-      ->type_name("N")
-      ->check(CLI::Range(1, 1024))
-      ->group(option_group::execution);
+  return command.option("--jobs,-j", jobs, fmt::format("{}; default: {}", what, usual))
+      .type("N")
+      .range(1, 1024)
+      .group(option_group::execution);
 }
 
-CLI::Option* add_rates(CLI::App& command, std::vector<std::string>& rates, const char* what) {
-  return command.add_option("--rate,--rates", rates, what)
-      ->type_name("HZ,...")
-      ->delimiter(',')
-      ->allow_extra_args(false);
+Option add_rates(Command command, std::vector<std::string>& rates, const char* what) {
+  return command.option("--rate,--rates", rates, what)
+      .type("HZ,...")
+      .separated_by_commas()
+      .one_each_time();
 }
 
-void add_plant(CLI::App& command, std::string& vehicle, std::string& plant,
-               const char* usual_vehicle, const char* usual_plant) {
+void add_case(Command command, std::string& case_name) {
+  command.option("--case", case_name, "The flight: the name or id of a case, or a case file")
+      .type("CASE")
+      .shows_default();
+}
+
+void add_plant(Command command, std::string& vehicle, std::string& plant, const char* usual_vehicle,
+               const char* usual_plant) {
   command
-      .add_option(
-          "--vehicle", vehicle,
-          fmt::format("Vehicle, one of `attest list --vehicles`; default: {}", usual_vehicle))
-      ->type_name("VEHICLE");
+      .option("--vehicle", vehicle,
+              fmt::format("Vehicle, one of `attest list --vehicles`; default: {}", usual_vehicle))
+      .type("VEHICLE");
   command
-      .add_option("--plant", plant,
-                  fmt::format("Plant: `mujoco` or `ode`; default: {}", usual_plant))
-      ->type_name("PLANT");
+      .option("--plant", plant, fmt::format("Plant: `mujoco` or `ode`; default: {}", usual_plant))
+      .type("PLANT");
 }
 
-void add_selection(CLI::App& command, SelectionOptions& options, Selects selects) {
+void add_selection(Command command, SelectionOptions& options, Selects selects) {
   const auto add = [&](const char* name, std::vector<std::string>& values, const char* what,
                        const char* type) {
-    return command.add_option(name, values, what)
-        ->type_name(type)
-        ->allow_extra_args(false)
-        ->group(option_group::selection);
+    return command.option(name, values, what)
+        .type(type)
+        .one_each_time()
+        .group(option_group::selection);
   };
   const bool with_flights = selects == Selects::all_vectors;
   add("--filter", options.filters,
@@ -134,37 +113,56 @@ void add_selection(CLI::App& command, SelectionOptions& options, Selects selects
   add("--exclude", options.excludes, "Leave out the vectors whose id matches this shell pattern",
       "GLOB");
   add("--group", options.groups, "Only these groups of cases, separated by commas", "GROUP")
-      ->delimiter(',');
+      .separated_by_commas();
   add("--profile", options.profiles, "Only these versions of the law, separated by commas",
       "PROFILE")
-      ->delimiter(',');
+      .separated_by_commas();
   add_rates(command, options.rates,
             with_flights ? "Only these loop rates [Hz], separated by commas; flights of v1.14 to "
                            "v1.16 have pairs such as 250:1000"
                          : "Only these loop rates [Hz], separated by commas")
-      ->group(option_group::selection);
+      .group(option_group::selection);
   if (!with_flights) return;
   add("--vehicle", options.vehicles, "Only flights of these vehicles, separated by commas",
       "VEHICLE")
-      ->delimiter(',');
+      .separated_by_commas();
   add("--plant", options.plants, "Only flights on this plant: `mujoco` or `ode`", "PLANT")
-      ->delimiter(',');
+      .separated_by_commas();
 }
 
-void add_assumed(CLI::App& command, std::vector<std::string>& assumed) {
+void add_assumed(Command command, std::vector<std::string>& assumed) {
   command
-      .add_option(
-          "--assume", assumed,
-          fmt::format(
-              "What was true in the flight where the log lacks a topic: some of {}; default "
-              "for v1.5.5 and v1.3.4: {}; default for v1.14 to v1.16: {}",
-              fmt::join(assumption_words(), ", "),
-              fmt::join(assumption_words(Module::mc_att_control, true), ","),
-              assumed_by_default_of_units()))
-      ->type_name("WORD,...")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->group(option_group::logs);
+      .option("--assume", assumed,
+              fmt::format(
+                  "What was true in the flight where the log lacks a topic: some of {}; default "
+                  "for v1.5.5 and v1.3.4: {}; default for v1.14 to v1.16: {}",
+                  fmt::join(assumption_words(), ", "),
+                  fmt::join(assumption_words(Module::mc_att_control, true), ","),
+                  assumed_by_default_of_units()))
+      .type("WORD,...")
+      .separated_by_commas()
+      .one_each_time()
+      .group(option_group::logs);
+}
+
+void add_reports(Command command, ReportOptions& options) {
+  command
+      .flag("--diagnose,!--no-diagnose", options.diagnose,
+            "After a failure, name the probable mistake; default: on")
+      .group(option_group::reports);
+  command
+      .flag("-v,--verbose", options.verbose,
+            "Show every failing case; default: the first of each group")
+      .group(option_group::reports);
+  for (const ReportFormat& format : report_formats()) {
+    command.option(format.option.c_str(), options.files[format.option], format.help)
+        .type("FILE")
+        .group(option_group::reports);
+  }
+  command
+      .flag("--github", options.github,
+            "Print annotations for GitHub Actions, and add to the job summary")
+      .group(option_group::reports);
 }
 
 }  // namespace attest::cli

@@ -9,9 +9,9 @@
 #include <fmt/ranges.h>
 
 #include "harness/casefile/parse_limits.hpp"
-#include "harness/cli/command.hpp"
 #include "harness/cli/find_case.hpp"
 #include "harness/cli/outputs.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/loop/case_timing.hpp"
@@ -22,6 +22,15 @@
 
 namespace attest::cli {
 namespace {
+
+struct SimOptions {
+  std::string case_name;  // with `rate`; empty with `timing`
+  std::string rate;
+  std::string vehicle, plant;  // empty: the lead vehicle and the first plant of the case
+  std::string timing;
+  HostOptions host;
+  std::string out, html;  // files; at least one
+};
 
 constexpr std::string_view all_plants = "all";
 
@@ -153,8 +162,6 @@ void print(const VectorResult& result, const SimOptions& options, bool is_writte
   }
 }
 
-}  // namespace
-
 int sim_command(const SimOptions& options, const Globals& globals) {
   auto sim = prepare(options, globals);
   if (!sim) return report_error(sim.error());
@@ -180,6 +187,49 @@ int sim_command(const SimOptions& options, const Globals& globals) {
   }
   if (!any_result) return report_error({"the port did not fly: no flight has a result"});
   return any_fails ? exit_failed : exit_ok;
+}
+
+}  // namespace
+
+void add_sim(const CommandLine& line) {
+  auto options = std::make_shared<SimOptions>();
+  const Command command =
+      line.add("sim",
+               "Fly one case in simulation with a port, and write a trace or a page of the "
+               "flight");
+  command.option("case", options->case_name, "The flight: the name or id of a case, or a case file")
+      .type("CASE");
+  command
+      .option("--rate", options->rate,
+              "Loop rate [Hz]; for v1.14 to v1.16 the rates of both units, such as 250:1000")
+      .type("HZ");
+  command
+      .option("--timing", options->timing,
+              "Fly the flight of this file from --record-timing again, at the recorded "
+              "times; it replaces CASE, --rate, --vehicle and --plant")
+      .type("F");
+  add_plant(command, options->vehicle, options->plant);
+  command.find("--plant").description(
+      "Plant: `mujoco` or `ode`, or `all` for a page (--html) with the flights on "
+      "both; default: the first plant of the case");
+  add_port(command, options->host);
+  command
+      .option("--out", options->out,
+              "Write the trace as CSV, or as a ULog if the name ends with .ulg; for v1.14 to "
+              "v1.16, F.csv has the rate unit and F.attitude_unit.csv the attitude unit")
+      .type("F");
+  add_page(command, options->html,
+           "a page with plots of the flight and an animation of the attitude");
+  add_timeout(command, options->host.timeout_s);
+  command.examples({{"attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv",
+                     "hover with the Iris on MuJoCo, and write a trace"},
+                    {"attest sim gust --rate 500 --vehicle hexa --plant ode --out flown.csv",
+                     "another vehicle and another plant"},
+                    {"attest sim flip_150_level --rate 250 --html flight.html",
+                     "the flight as a page with plots"},
+                    {"attest sim gust --rate 250 --plant all --html flight.html",
+                     "the flights on both plants in the same plots"}});
+  command.runs(options, sim_command);
 }
 
 }  // namespace attest::cli

@@ -7,10 +7,10 @@
 #include <fmt/ranges.h>
 
 #include "harness/casefile/parse_limits.hpp"
-#include "harness/cli/command.hpp"
 #include "harness/cli/exchange_note.hpp"
 #include "harness/cli/find_case.hpp"
 #include "harness/cli/outputs.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/interrupt.hpp"
@@ -22,6 +22,23 @@
 
 namespace attest::cli {
 namespace {
+
+struct StressOptions {
+  HostOptions host;
+  std::vector<std::string> rates = {"250", "500", "1000", "2000", "4000", "8000"};
+  double duration_s = 10;
+  std::string case_name = "flight/hover";
+  std::string vehicle, plant;  // empty: the lead vehicle and the first plant of the case
+  int load = 0;
+  std::string load_kind = "cpu";
+  std::string policy = "fifo";
+  int cpus = 2;
+  double spin_us = 0;
+  // Empty: the budget of the case.
+  std::optional<double> misses_per_million, p99_latency_us, execution_us;
+  std::string html, json, junit, record_timing;
+  bool cyclictest = true;
+};
 
 // The idle machine is measured for as long as the flight takes, but at most for this time.
 constexpr double idle_s_max = 5;
@@ -178,8 +195,6 @@ Result<void> run_all(const StressPlan& plan, const StressOptions& options, const
   return {};
 }
 
-}  // namespace
-
 int stress_command(const StressOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
@@ -222,6 +237,113 @@ int stress_command(const StressOptions& options, const Globals& globals) {
         {fmt::format("not judged: {} Hz; see the reasons above", fmt::join(missing, " Hz, "))});
   }
   return exit_ok;
+}
+
+// The conditions of the flight: load, scheduling, CPUs.
+void add_machine(Command command, StressOptions& options) {
+  command.option("--load", options.load, "Number of processes that load the machine")
+      .range(0, 1024)
+      .type("N")
+      .shows_default()
+      .group(option_group::execution);
+  command
+      .option("--load-kind", options.load_kind,
+              "Resource that the processes of --load use: `cpu`, `cache` or `io`")
+      .type("KIND")
+      .shows_default()
+      .group(option_group::execution);
+  command
+      .option("--policy", options.policy,
+              "Scheduling policy of port and plant: `fifo` (where it is permitted) or `other`")
+      .type("POLICY")
+      .shows_default()
+      .group(option_group::execution);
+  command
+      .option("--cpus", options.cpus,
+              "Number of CPUs: with 2, port and plant have a CPU each; with 1, they share it")
+      .range(1, 2)
+      .shows_default()
+      .group(option_group::execution);
+  command
+      .option("--spin", options.spin_us,
+              "Wake the port this time [us] before each release, and let it spin until the "
+              "release")
+      .range(0.0, 1e6)
+      .shows_default()
+      .group(option_group::execution);
+  command
+      .flag("--cyclictest,!--no-cyclictest", options.cyclictest,
+            "Measure the idle machine with cyclictest too, where it is installed; default: "
+            "on")
+      .group(option_group::execution);
+}
+
+void add_budgets(Command command, StressOptions& options) {
+  command
+      .option("--misses-per-million", options.misses_per_million,
+              "Limit of deadline misses, and also of overruns, per million deadlines; default: "
+              "that of the case")
+      .at_least_zero()
+      .group(option_group::strictness);
+  command
+      .option("--p99-latency", options.p99_latency_us,
+              "Wake-up latency that 1% of the steps may exceed [us]; default: that of the "
+              "case")
+      .at_least_zero()
+      .group(option_group::strictness);
+  command
+      .option("--budget", options.execution_us,
+              "Execution time above which a step is an overrun [us]; default: that of the "
+              "case")
+      .at_least_zero()
+      .group(option_group::strictness);
+}
+
+void add_stress_reports(Command command, StressOptions& options) {
+  command
+      .option("--record-timing", options.record_timing,
+              "Write the times of all ticks, for `run --timing` and `sim --timing`; needs a "
+              "single rate")
+      .type("F")
+      .group(option_group::reports);
+  add_page(command, options.html, "a page with the distributions of the times and a timeline");
+  command.option("--json", options.json, "Write all measurements as JSON")
+      .type("F")
+      .group(option_group::reports);
+  command.option("--junit", options.junit, "Write a JUnit XML report")
+      .type("F")
+      .group(option_group::reports);
+}
+
+}  // namespace
+
+void add_stress(const CommandLine& line) {
+  auto options = std::make_shared<StressOptions>();
+  const Command command =
+      line.add("stress",
+               "Fly one case in real time with a port, and measure latency, execution time, "
+               "response time and deadline misses");
+  add_port(command, options->host);
+  add_rates(command, options->rates,
+            "Loop rates [Hz], separated by commas; for v1.14 to v1.16 pairs such as 250:1000")
+      .shows_default("250,500,1000,2000,4000,8000");
+  command.option("--duration", options->duration_s, "Duration of the flight at each rate [s]")
+      .range(0.1, 3600.0)
+      .shows_default();
+  add_case(command, options->case_name);
+  add_plant(command, options->vehicle, options->plant);
+  add_machine(command, *options);
+  add_budgets(command, *options);
+  add_stress_reports(command, *options);
+  add_timeout(command, options->host.timeout_s);
+  command.examples({{"attest stress --port lib:./libmine.so", "fly at 250 Hz to 8 kHz, 10 s each"},
+                    {"attest stress --port lib:./libmine.so --rate 1000 --load 2 --load-kind cache",
+                     "fly while two processes fill the caches"},
+                    {"attest stress --case hover --rate 250:1000",
+                     "fly the attitude unit at 250 Hz and the rate unit at 1 kHz"},
+                    {"attest stress --rate 500 --duration 5 --record-timing t.json",
+                     "record the times; `attest run --timing t.json` replays them"}});
+  command.runs(options, stress_command);
 }
 
 }  // namespace attest::cli

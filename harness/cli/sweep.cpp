@@ -10,10 +10,10 @@
 
 #include <fmt/format.h>
 
-#include "harness/cli/command.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/prepare_sweep.hpp"
 #include "harness/cli/shard_plan.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/interrupt.hpp"
@@ -178,8 +178,6 @@ Result<void> check_shard(const PreparedSweep& sweep, const SweepOptions& options
                  "so shards are not possible; remove the key");
 }
 
-}  // namespace
-
 int sweep_command(const SweepOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
@@ -228,6 +226,90 @@ int sweep_command(const SweepOptions& options, const Globals& globals) {
   const auto summary = report(*sweep, options, *suite, samples, globals.quiet, *std::move(html));
   if (!summary) return report_error(summary.error());
   return summary->passes() ? exit_ok : exit_failed;
+}
+
+void add_sweep_parts(Command command, SweepOptions& options) {
+  command.option("--samples", options.samples, "Number of samples; default: that of the file")
+      .positive()
+      .type("N");
+  const Option shard =
+      command.option("--shard", options.shard, "Fly only part I of N of the samples")
+          .type("I/N")
+          .shows_default();
+  command.option("--merge", options.merge, "Join the shards in these folders, and fly nothing")
+      .type("DIR...")
+      .excludes(shard);
+  command
+      .option("--keep-worst", options.keep_worst,
+              "Keep this number of worst flights of each requirement, for `attest sim`")
+      .range(0, 1000)
+      .type("K")
+      .shows_default()
+      .group(option_group::reports);
+}
+
+void add_shard_plan(Command command, SweepOptions& options) {
+  const Option plan =
+      command
+          .option("--plan", options.plan,
+                  "Fly nothing, and write to --out the files with which many machines fly the "
+                  "shards: `slurm`, `parallel` (GNU parallel), `github` or `gitlab`")
+          .type("KIND")
+          .group(option_group::execution);
+  const Option shards = command.option("--shards", options.shards, "Number of shards of --plan")
+                            .type("N")
+                            .positive()
+                            .needs(plan)
+                            .group(option_group::execution);
+  plan.needs(shards);
+  for (const char* other : {"--shard", "--merge"}) plan.excludes(command.find(other));
+}
+
+}  // namespace
+
+void add_sweep(const CommandLine& line) {
+  auto options = std::make_shared<SweepOptions>();
+  const Command command =
+      line.add("sweep",
+               "Fly a case many times with dispersed values, and estimate the probability "
+               "that a flight holds each requirement");
+  command
+      .option("file", options->file,
+              "The sweep file, with case, dispersions, design and requirements")
+      .type("SWEEP.toml")
+      .required();
+  add_plant(command, options->vehicle, options->plant, "that of the file", "that of the file");
+  add_port(command, options->host);
+  command
+      .option("--out", options->out,
+              "Folder for the results; an interrupted sweep continues with the samples that "
+              "are missing there")
+      .type("DIR")
+      .required()
+      .group(option_group::reports);
+  add_sweep_parts(command, *options);
+  add_page(command, options->html,
+           "a page with the requirements, distributions, sensitivities and worst flights");
+  add_shard_plan(command, *options);
+  add_timeout(command, options->host.timeout_s);
+  const Option jobs =
+      add_jobs(command, options->jobs,
+               "Number of samples that fly at the same time, with --plan in each shard",
+               "one for each CPU; with --plan, 1");
+  command.examples(
+      {{"attest sweep SWEEP.toml --out results --keep-worst 3 --html sweep.html",
+        "fly the reference, keep the three worst flights of each requirement, and write a page"},
+       {"attest sweep SWEEP.toml --port lib:./libmine.so --out results",
+        "fly port and reference on the same samples, and test whether they differ"},
+       {"attest sweep SWEEP.toml --shard 2/4 --out part2", "fly the second quarter of the samples"},
+       {"attest sweep SWEEP.toml --merge part1 part2 part3 part4 --out results",
+        "join the four shards"},
+       {"attest sweep SWEEP.toml --plan slurm --shards 200 --out plan",
+        "make a job array for a cluster; plan/submit submits it"}});
+  command.runs([options, jobs, command] {
+    if (!options->plan.empty() && !jobs.is_given()) options->jobs = 1;
+    return sweep_command(*options, command.globals());
+  });
 }
 
 }  // namespace attest::cli

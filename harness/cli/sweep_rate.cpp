@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include "harness/casefile/parse_limits.hpp"
-#include "harness/cli/command.hpp"
 #include "harness/cli/find_case.hpp"
 #include "harness/cli/outputs.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/interrupt.hpp"
@@ -19,6 +19,15 @@
 
 namespace attest::cli {
 namespace {
+
+struct RateSweepOptions {
+  std::string case_name = "flight/tilt_step_30";
+  std::vector<std::string> rates = {"50", "100", "250", "500", "1000"};
+  std::vector<std::string> vehicles, plants;  // empty: all of the case
+  HostOptions host;
+  int jobs = 1;
+  std::string csv, html;
+};
 
 struct RateSweepPlan {
   Case the_case;
@@ -76,8 +85,6 @@ Result<RateSweepPlan> make_plan(const RateSweepOptions& options, const SuiteFold
   return plan;
 }
 
-}  // namespace
-
 int sweep_rate_command(const RateSweepOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
@@ -131,6 +138,47 @@ int sweep_rate_command(const RateSweepOptions& options, const Globals& globals) 
   const bool failed = std::any_of(rows.begin(), rows.end(),
                                   [](const RateSweepRow& row) { return !row.failure.empty(); });
   return failed ? exit_failed : exit_ok;
+}
+
+}  // namespace
+
+void add_sweep_rate(const CommandLine& line) {
+  auto options = std::make_shared<RateSweepOptions>();
+  const Command command =
+      line.add("sweep-rate",
+               "Find for each vehicle the lowest loop rate and the largest delay of the motor "
+               "commands at which a flight keeps its bounds");
+  command
+      .option("--case", options->case_name,
+              "The flight, whose metrics have the bounds: the name or id of a case, or a "
+              "case file")
+      .type("CASE")
+      .shows_default();
+  add_rates(command, options->rates,
+            "Loop rates at which the largest delay is searched [Hz]; for v1.14 to v1.16 "
+            "pairs such as 250:1000")
+      .shows_default("50,100,250,500,1000");
+  command
+      .option("--vehicle", options->vehicles,
+              "Only this vehicle; default: all vehicles of the case")
+      .type("VEHICLE")
+      .one_each_time();
+  command
+      .option("--plant", options->plants,
+              "Only this plant: `mujoco` or `ode`; default: all plants of the case")
+      .type("PLANT")
+      .one_each_time();
+  add_port(command, options->host);
+  add_page(command, options->html, "a page with the limits, and with the metrics by rate");
+  command.option("--csv", options->csv, "Write the table as CSV")
+      .type("F.csv")
+      .group(option_group::reports);
+  add_timeout(command, options->host.timeout_s);
+  add_jobs(command, options->jobs,
+           "Number of pairs of vehicle and plant that fly at the same time");
+  command.examples({{"attest sweep-rate --port lib:./libmine.so --vehicle iris",
+                     "find the lowest rate and the largest delay for the Iris"}});
+  command.runs(options, sweep_rate_command);
 }
 
 }  // namespace attest::cli

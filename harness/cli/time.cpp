@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "harness/cli/command.hpp"
 #include "harness/cli/exchange_note.hpp"
 #include "harness/cli/outputs.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/interrupt.hpp"
@@ -19,6 +19,15 @@
 
 namespace attest::cli {
 namespace {
+
+struct TimeCommandOptions {
+  SelectionOptions select;
+  HostOptions host;
+  TimeOptions measure;
+  int allowed = 0;  // number of steps that may be over the budget
+  bool instructions = false;
+  std::string html, json;
+};
 
 // The open-loop cases of units. Flights are left out: their steps cannot be repeated without a new
 // flight, and do not differ in kind from those in open loop.
@@ -112,8 +121,6 @@ int report(const TimeCommandOptions& options, const TimeRun& run, bool quiet) {
   return failed ? exit_failed : exit_ok;
 }
 
-}  // namespace
-
 int time_command(const TimeCommandOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
@@ -158,6 +165,60 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
     if (!written) return report_error(written.error());
   }
   return report(options, run, globals.quiet);
+}
+
+}  // namespace
+
+void add_time(const CommandLine& line) {
+  auto options = std::make_shared<TimeCommandOptions>();
+  const Command command =
+      line.add("time",
+               "Measure the execution time and the stack use of a port's steps in the "
+               "open-loop vectors");
+  add_port(command, options->host);
+  add_selection(command, options->select, Selects::open_loop);
+  command
+      .option("--repeat", options->measure.repeats,
+              "Number of runs of each vector; the shortest time of each step counts")
+      .range(1, 1000)
+      .shows_default();
+  const Option budget = command
+                            .option("--budget", options->measure.budget_us,
+                                    "Fail if a step takes longer than this [us]; default: no limit")
+                            .positive();
+  command.option("--allow", options->allowed, "Number of steps that may exceed --budget")
+      .at_least_zero()
+      .needs(budget)
+      .shows_default();
+  command
+      .option("--worst", options->measure.worst,
+              "Write the trace of the vector with the slowest step, up to that step, for "
+              "`attest replay`")
+      .type("F.csv");
+  command.flag("--instructions", options->instructions,
+               "Count the instructions of the steps of the slowest vector with valgrind; "
+               "default: off");
+  command.flag("--stack,!--no-stack", options->measure.stack,
+               "Measure the largest stack use of a step, in one more run of each vector; "
+               "default: on");
+  add_page(command, options->html,
+           "a page with the times by group and rate, and with the slowest vectors");
+  command
+      .option("--json", options->json, "Write the times and the stack use of each vector as JSON")
+      .type("F")
+      .group(option_group::reports);
+  add_timeout(command, options->host.timeout_s);
+  command
+      .flag("--in-process", options->host.in_process,
+            "Run the port in attest's own process, for valgrind, perf or a debugger")
+      .group(option_group::execution);
+  command.examples({{"attest time --port lib:./libmine.so --worst slowest.csv",
+                     "write the trace with the slowest step"},
+                    {"attest time --port lib:./libmine.so --budget 20 --rate 250",
+                     "fail if a step takes more than 20 us"},
+                    {"attest time --port lib:./libmine.so --profile px4-v1.16.0",
+                     "measure the attitude unit and the rate unit, with a row for each"}});
+  command.runs(options, time_command);
 }
 
 }  // namespace attest::cli

@@ -9,10 +9,10 @@
 
 #include "harness/casefile/log_case.hpp"
 #include "harness/casefile/parse.hpp"
-#include "harness/cli/command.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/read_log.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/cli/vectors.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/suggestion.hpp"
 #include "harness/port/profiles.hpp"
@@ -115,7 +115,7 @@ Result<std::vector<WrittenCase>> write_cases_of_log(const VectorOptions& options
 
 }  // namespace
 
-int vectors_from_log_command(const VectorOptions& options, const Globals& globals) {
+int vectors_from_log(const VectorOptions& options, const Globals& globals) {
   const auto written = write_cases_of_log(options);
   if (!written) return report_error(written.error());
   if (globals.quiet) return exit_ok;

@@ -1,0 +1,84 @@
+#include "harness/cli/command_line.hpp"
+
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace attest::cli {
+
+Option Option::type(const char* name) const { return Option(*option_->type_name(name)); }
+Option Option::group(const char* name) const { return Option(*option_->group(name)); }
+Option Option::description(const char* text) const { return Option(*option_->description(text)); }
+Option Option::shows_default() const { return Option(*option_->capture_default_str()); }
+Option Option::shows_default(const char* text) const { return Option(*option_->default_str(text)); }
+Option Option::required() const { return Option(*option_->required()); }
+Option Option::one_each_time() const { return Option(*option_->allow_extra_args(false)); }
+Option Option::separated_by_commas() const { return Option(*option_->delimiter(',')); }
+
+Option Option::range(double least, double most) const {
+  return Option(*option_->check(CLI::Range(least, most)));
+}
+Option Option::range(int least, int most) const {
+  return Option(*option_->check(CLI::Range(least, most)));
+}
+Option Option::at_least_zero() const { return Option(*option_->check(CLI::NonNegativeNumber)); }
+Option Option::positive() const { return Option(*option_->check(CLI::PositiveNumber)); }
+Option Option::one_of(const std::vector<std::string>& values) const {
+  return Option(*option_->check(CLI::IsMember(values)));
+}
+Option Option::check(const std::function<std::string(const std::string&)>& wrong) const {
+  return Option(*option_->check(wrong));
+}
+
+Option Option::needs(Option other) const { return Option(*option_->needs(other.option_)); }
+Option Option::excludes(Option other) const { return Option(*option_->excludes(other.option_)); }
+bool Option::is_given() const { return option_->count() > 0; }
+
+Option Command::option(const char* name, std::string& value, const std::string& what) const {
+  return Option(*app_->add_option(name, value, what));
+}
+Option Command::option(const char* name, std::filesystem::path& value,
+                       const std::string& what) const {
+  return Option(*app_->add_option(name, value, what));
+}
+Option Command::option(const char* name, std::vector<std::string>& value,
+                       const std::string& what) const {
+  return Option(*app_->add_option(name, value, what));
+}
+Option Command::option(const char* name, int& value, const std::string& what) const {
+  return Option(*app_->add_option(name, value, what));
+}
+Option Command::option(const char* name, std::uint64_t& value, const std::string& what) const {
+  return Option(*app_->add_option(name, value, what));
+}
+Option Command::option(const char* name, double& value, const std::string& what) const {
+  return Option(*app_->add_option(name, value, what));
+}
+Option Command::option(const char* name, std::optional<int>& value, const std::string& what) const {
+  return Option(*app_->add_option(name, value, what));
+}
+Option Command::option(const char* name, std::optional<double>& value,
+                       const std::string& what) const {
+  return Option(*app_->add_option(name, value, what));
+}
+Option Command::flag(const char* name, bool& value, const std::string& what) const {
+  return Option(*app_->add_flag(name, value, what));
+}
+Option Command::find(const char* name) const { return Option(*app_->get_option(name)); }
+
+void Command::examples(std::initializer_list<Example> examples) const {
+  std::string text = "\nExamples:\n";
+  for (const auto& [line, what] : examples) text += fmt::format("  {}\n      {}\n", line, what);
+  app_->footer(text);
+}
+
+void Command::runs(Action work) const {
+  app_->callback([work = std::move(work), action = action_] { *action = work; });
+}
+
+Command CommandLine::add(const char* name, const char* what) const {
+  return {*app.add_subcommand(name, what), globals, action};
+}
+
+}  // namespace attest::cli
