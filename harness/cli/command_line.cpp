@@ -35,33 +35,19 @@ Option Option::needs(Option other) const { return Option(*option_->needs(other.o
 Option Option::excludes(Option other) const { return Option(*option_->excludes(other.option_)); }
 bool Option::is_given() const { return option_->count() > 0; }
 
-Option Command::option(const char* name, std::string& value, const std::string& what) const {
+template <typename T>
+Option Command::option(const char* name, T& value, const std::string& what) const {
   return Option(*app_->add_option(name, value, what));
 }
-Option Command::option(const char* name, std::filesystem::path& value,
-                       const std::string& what) const {
-  return Option(*app_->add_option(name, value, what));
-}
-Option Command::option(const char* name, std::vector<std::string>& value,
-                       const std::string& what) const {
-  return Option(*app_->add_option(name, value, what));
-}
-Option Command::option(const char* name, int& value, const std::string& what) const {
-  return Option(*app_->add_option(name, value, what));
-}
-Option Command::option(const char* name, std::uint64_t& value, const std::string& what) const {
-  return Option(*app_->add_option(name, value, what));
-}
-Option Command::option(const char* name, double& value, const std::string& what) const {
-  return Option(*app_->add_option(name, value, what));
-}
-Option Command::option(const char* name, std::optional<int>& value, const std::string& what) const {
-  return Option(*app_->add_option(name, value, what));
-}
-Option Command::option(const char* name, std::optional<double>& value,
-                       const std::string& what) const {
-  return Option(*app_->add_option(name, value, what));
-}
+template Option Command::option(const char*, std::string&, const std::string&) const;
+template Option Command::option(const char*, std::vector<std::string>&, const std::string&) const;
+template Option Command::option(const char*, std::filesystem::path&, const std::string&) const;
+template Option Command::option(const char*, int&, const std::string&) const;
+template Option Command::option(const char*, std::uint64_t&, const std::string&) const;
+template Option Command::option(const char*, double&, const std::string&) const;
+template Option Command::option(const char*, std::optional<int>&, const std::string&) const;
+template Option Command::option(const char*, std::optional<double>&, const std::string&) const;
+
 Option Command::flag(const char* name, bool& value, const std::string& what) const {
   return Option(*app_->add_flag(name, value, what));
 }

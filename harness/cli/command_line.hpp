@@ -63,16 +63,12 @@ class Command {
 
   const Globals& globals() const { return *globals_; }
 
-  // `value` outlives the command line. A name without hyphens is that of an argument. A flag's name
-  // such as "--stack,!--no-stack" has its negation.
-  Option option(const char* name, std::string& value, const std::string& what) const;
-  Option option(const char* name, std::filesystem::path& value, const std::string& what) const;
-  Option option(const char* name, std::vector<std::string>& value, const std::string& what) const;
-  Option option(const char* name, int& value, const std::string& what) const;
-  Option option(const char* name, std::uint64_t& value, const std::string& what) const;
-  Option option(const char* name, double& value, const std::string& what) const;
-  Option option(const char* name, std::optional<int>& value, const std::string& what) const;
-  Option option(const char* name, std::optional<double>& value, const std::string& what) const;
+  // `value` outlives the command line. A name without hyphens is that of an argument. T:
+  // std::string, a list of them, std::filesystem::path, int, std::uint64_t, double, an optional int
+  // or double.
+  template <typename T>
+  Option option(const char* name, T& value, const std::string& what) const;
+  // A name such as "--stack,!--no-stack" has its negation.
   Option flag(const char* name, bool& value, const std::string& what) const;
   // REQUIRES: the command has it.
   Option find(const char* name) const;
