@@ -95,10 +95,10 @@ void add_help(const CommandLine& line) {
 }
 
 // In the order of --help.
-constexpr std::array commands{add_run,        add_merge,    add_sim,    add_stress, add_sweep,
-                              add_sweep_rate, add_schedule, add_time,   add_replay, add_record,
-                              add_compare,    add_plot,     add_faults, add_list,   add_vectors,
-                              add_bless,      add_new_port, add_doctor, add_smoke,  add_help};
+constexpr std::array every_command{
+    add_run,     add_merge,  add_sim,      add_stress,  add_sweep, add_sweep_rate, add_schedule,
+    add_time,    add_replay, add_record,   add_compare, add_plot,  add_faults,     add_list,
+    add_vectors, add_bless,  add_new_port, add_doctor,  add_smoke, add_help};
 
 // Returns the exit code if the command line is wrong, or only asks for help or the version. Empty:
 // the command must run.
@@ -158,7 +158,7 @@ int run_command_line(int argc, char** argv) {
       ->allow_extra_args(false);
   app.add_flag("-q,--quiet", globals.quiet, "Print only failures and errors");
   Action action;
-  for (const auto add : commands) add({app, globals, action});
+  for (const auto add : every_command) add({app, globals, action});
   app.footer(footer);  // last: commands copy the footer that exists when they are added
   const auto ended = parse(app, argc, argv);
   if (ended) return *ended;
