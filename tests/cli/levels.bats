@@ -1,7 +1,8 @@
 load common
 
 # For tests that need many cases: groups without flights, which take seconds (flight.bats).
-open_loop=(--group anti_windup --group modes --group arming --group attitude --group robustness)
+open_loop=(--group anti_windup --group modes --group arming --group attitude --group robustness
+  --rate 50 --rate 333 --rate 1000)
 
 @test "a port that is a tick late is the same at the events level only" {
   run "$ATTEST" run --level events "${open_loop[@]}" --port fault:outputs-late
