@@ -1,18 +1,21 @@
 #include <charconv>
+#include <filesystem>
+#include <memory>
 #include <string>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/shared_arguments.hpp"
-#include "harness/compare/compare_files.hpp"
+#include "harness/compare/compare_parts.hpp"
 #include "harness/compare/compare_signals.hpp"
 #include "harness/core/file.hpp"
+#include "harness/host/trace_format.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/html/signals_page.hpp"
 #include "harness/report/signals_text.hpp"
-#include "harness/ulog/flight_log.hpp"
 
 namespace attest::cli {
 namespace {
@@ -44,12 +47,30 @@ std::string not_compared(const ChannelSet& outputs, const std::string& want) {
 }
 
 Result<TimedSignals> signals_in(const std::string& file) {
-  auto signals = read_timed_signals(file);
+  auto signals = read_as<&TraceFormat::read_signals>(file);
   if (!signals) return signals;
   for (const std::string& note : signals->notes) {
     fmt::print(stderr, "attest: note: {}: {}\n", file, note);
   }
   return signals;
+}
+
+bool is_trace(const std::string& file) { return format_of(file).open != nullptr; }
+
+Result<std::unique_ptr<TraceParts>> trace_in(const std::string& file) {
+  std::error_code unknown;
+  if (!std::filesystem::is_fifo(file, unknown)) {
+    return read_as<&TraceFormat::open>(file, TraceNeed::outputs);
+  }
+  return fail_at(file, "is a pipe; write its content to a file first");
+}
+
+Result<Comparison> compare_ticks(const CompareOptions& options, const Tolerances& tolerances) {
+  const auto got = trace_in(options.got);
+  if (!got) return tl::unexpected(got.error());
+  const auto want = trace_in(options.want);
+  if (!want) return tl::unexpected(want.error());
+  return compare_parts(**got, **want, tolerances);
 }
 
 // The time of --shift. For "auto": the estimated one, or 0 if it cannot be estimated.
@@ -121,12 +142,12 @@ int compare_command(const CompareOptions& options, const Globals& globals) {
   const auto checked =
       check_outputs({options.html}, {"", {options.got, options.want}}, globals.suite);
   if (!checked) return report_error(checked.error());
-  if (options.by_time || is_log(options.got) || is_log(options.want)) {
+  if (options.by_time || !is_trace(options.got) || !is_trace(options.want)) {
     return compare_by_time(options, *level, globals.quiet);
   }
   if (!options.html.empty())
     return report_error({"--html is for a comparison by time; add --by-time"});
-  const auto compared = compare_files(options.got, options.want, Tolerances(*level));
+  const auto compared = compare_ticks(options, Tolerances(*level));
   if (!compared) return report_error(compared.error());
   const Comparison& comparison = *compared;
   if (!comparison.agrees()) {

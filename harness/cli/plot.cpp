@@ -9,9 +9,9 @@
 
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/shared_arguments.hpp"
-#include "harness/compare/timed_signals.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/suggestion.hpp"
+#include "harness/host/trace_format.hpp"
 #include "harness/report/html/signals_page.hpp"
 #include "harness/trace/channels.hpp"
 
@@ -30,7 +30,7 @@ constexpr std::size_t most_signals = 100;
 Result<std::vector<TimedSignals>> sources_of(const std::vector<std::string>& files) {
   std::vector<TimedSignals> sources;
   for (const std::string& file : files) {
-    auto signals = read_timed_signals(file);
+    auto signals = read_as<&TraceFormat::read_signals>(file);
     if (!signals) return tl::unexpected(signals.error());
     for (const std::string& note : signals->notes) {
       fmt::print(stderr, "attest: note: {}: {}\n", file, note);

@@ -9,7 +9,7 @@
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
-#include "harness/ulog/trace_log.hpp"
+#include "harness/host/trace_format.hpp"
 #include "harness/verify/fixed_step.hpp"
 
 namespace attest::cli {
@@ -64,8 +64,11 @@ void add_record(const CommandLine& line) {
   command.option("--rate", options->rate, "The loop rate [Hz]").type("HZ").required();
   add_port(command, options->host);
   command
-      .option("--out", options->out,
-              "Write the trace as CSV, or as a ULog if the name ends with .ulg; `-` is stdout")
+      .option(
+          "--out", options->out,
+          fmt::format("Write the trace as CSV, or in the format of the name's ending ({}); `-` is "
+                      "stdout",
+                      written_endings()))
       .type("F")
       .shows_default();
   add_timeout(command, options->host.timeout_s);

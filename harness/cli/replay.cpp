@@ -16,6 +16,7 @@
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/version.hpp"
+#include "harness/host/trace_format.hpp"
 #include "harness/report/conclusion.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/html/signals_page.hpp"
@@ -91,7 +92,7 @@ class Replay {
  private:
   Result<void> replay(const std::string& file) {
     if (auto started = start(); !started) return started;
-    return is_log(file) ? replay_log(file) : replay_trace(file);
+    return format_of(file).read_log != nullptr ? replay_log(file) : replay_trace(file);
   }
 
   // Starts the port's process unless one runs. It is called before a file is read, because the

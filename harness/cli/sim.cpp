@@ -14,10 +14,10 @@
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
+#include "harness/host/trace_format.hpp"
 #include "harness/loop/case_timing.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/html/flight_page.hpp"
-#include "harness/ulog/trace_log.hpp"
 #include "harness/verify/simulate.hpp"
 
 namespace attest::cli {
@@ -215,8 +215,10 @@ void add_sim(const CommandLine& line) {
   add_port(command, options->host);
   command
       .option("--out", options->out,
-              "Write the trace as CSV, or as a ULog if the name ends with .ulg; for v1.14 to "
-              "v1.16, F.csv has the rate unit and F.attitude_unit.csv the attitude unit")
+              fmt::format("Write the trace as CSV, or in the format of the name's ending ({}); for "
+                          "v1.14 to v1.16, F.csv has the rate unit and F.attitude_unit.csv the "
+                          "attitude unit",
+                          written_endings()))
       .type("F");
   add_page(command, options->html,
            "a page with plots of the flight and an animation of the attitude");

@@ -30,7 +30,7 @@ Result<std::size_t> write_vectors(const VectorOptions& options, const Globals& g
   }
   const auto cases = options.select.cases_in(suite->case_folders());
   if (!cases) return tl::unexpected(cases.error());
-  return write_recorded_vectors(options.folder, *format, *cases, fixed_step);
+  return write_recorded_vectors(options.folder, **format, *cases, fixed_step);
 }
 
 int vectors_command(const VectorOptions& options, const Globals& globals) {

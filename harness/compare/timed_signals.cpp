@@ -12,7 +12,6 @@
 #include "harness/trace/csv_layout.hpp"
 #include "harness/trace/csv_rows.hpp"
 #include "harness/trace/plant_columns.hpp"
-#include "harness/ulog/flight_log.hpp"
 #include "harness/ulog/log_topics.hpp"
 #include "harness/ulog/reader.hpp"
 
@@ -93,7 +92,7 @@ void add_data(const ulog::Data& data, TimedTopic& topic) {
 // By topic and instance: the name of a topic may look like that of an instance of another one.
 using TopicsOfLog = std::map<std::pair<std::string, std::uint8_t>, TimedTopic>;
 
-Result<TimedSignals> signals_of_log(const std::filesystem::path& path) {
+Result<TimedSignals> all_signals_of_log(const std::filesystem::path& path) {
   auto reader = ulog::Reader::open(path);
   if (!reader) return tl::unexpected(reader.error());
   TopicsOfLog topics;
@@ -173,7 +172,7 @@ struct Row {
   }
 };
 
-Result<TimedSignals> signals_of_csv(const std::filesystem::path& path) {
+Result<TimedSignals> all_signals_of_csv(const std::filesystem::path& path) {
   auto rows = CsvRows::open(path);
   if (!rows) return tl::unexpected(rows.error());
   if (auto refused = refuse_golden(*rows); !refused) return tl::unexpected(refused.error());
@@ -231,15 +230,21 @@ const TimedSignal* TimedSignals::find(const std::string& name) const {
   return found != all.end() && found->name == name ? &*found : nullptr;
 }
 
-Result<TimedSignals> read_timed_signals(const std::filesystem::path& path) {
-  auto signals = is_log(path) ? signals_of_log(path) : signals_of_csv(path);
-  if (!signals) return signals;
-  std::erase_if(signals->all, [](const TimedSignal& signal) { return signal.values.empty(); });
-  if (signals->all.empty()) return fail_at(path.string(), "has no sample of a signal");
-  std::stable_sort(signals->all.begin(), signals->all.end(),
+Result<TimedSignals> in_order(TimedSignals signals) {
+  std::erase_if(signals.all, [](const TimedSignal& signal) { return signal.values.empty(); });
+  if (signals.all.empty()) return fail_at(signals.source, "has no sample of a signal");
+  std::stable_sort(signals.all.begin(), signals.all.end(),
                    [](const TimedSignal& a, const TimedSignal& b) { return a.name < b.name; });
-  leave_out_repeated_names(*signals);
+  leave_out_repeated_names(signals);
   return signals;
+}
+
+Result<TimedSignals> signals_of_log(const std::filesystem::path& path) {
+  return all_signals_of_log(path).and_then(in_order);
+}
+
+Result<TimedSignals> signals_of_csv(const std::filesystem::path& path) {
+  return all_signals_of_csv(path).and_then(in_order);
 }
 
 }  // namespace attest

@@ -27,8 +27,7 @@ struct TimedSignals {
   const TimedSignal* find(const std::string& name) const;
 };
 
-// Reads a ULog if is_log(path) (the name ends with .ulg or .ulog), otherwise a CSV file with a
-// column `timestamp` in us. Memory: all signals.
+// Of a ULog, or of a CSV file with a column `timestamp` in us. Memory: all signals.
 //
 // Names: a signal of a log is a number of a topic; further instances of a topic have their number
 // in brackets. Columns `in/...` and `out/...` of a trace have the name that the signal has in a log
@@ -41,6 +40,11 @@ struct TimedSignals {
 // - signals with the name of an earlier signal
 //
 // Errors: the file cannot be read; a cell is no number; no column `timestamp`; no signal.
-Result<TimedSignals> read_timed_signals(const std::filesystem::path& path);
+Result<TimedSignals> signals_of_log(const std::filesystem::path& path);
+Result<TimedSignals> signals_of_csv(const std::filesystem::path& path);
+
+// Sorts signals by name, and leaves out empty ones and those with the name of an earlier signal.
+// Errors: no signal is left.
+Result<TimedSignals> in_order(TimedSignals signals);
 
 }  // namespace attest

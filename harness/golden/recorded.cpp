@@ -12,6 +12,7 @@
 #include "controller/actuation/mixer.hpp"
 #include "harness/casefile/parse.hpp"
 #include "harness/core/suggestion.hpp"
+#include "harness/host/trace_format.hpp"
 #include "harness/port/profiles.hpp"
 #include "harness/trace/provenance.hpp"
 
@@ -59,7 +60,7 @@ std::string newest_profile_of(Module module) {
   return std::string(found == all.end() ? default_profile : found->name);
 }
 
-Result<ModuleUnderTest> subject_of(const TraceReader& reader, const std::filesystem::path& file,
+Result<ModuleUnderTest> subject_of(const TraceParts& reader, const std::filesystem::path& file,
                                    const std::string& profile, const std::string& mixer) {
   const auto provenance = provenance_of(file);
   if (!provenance) return tl::unexpected(provenance.error());
@@ -123,13 +124,13 @@ void override_parameter(const ParameterChange& change, Trace& trace) {
 
 Result<RecordedParts> RecordedParts::open(const std::filesystem::path& file,
                                           const std::string& profile, const std::string& mixer) {
-  auto reader = TraceReader::open(file, TraceNeed::inputs_and_outputs);
+  auto reader = read_as<&TraceFormat::open>(file, TraceNeed::inputs_and_outputs);
   if (!reader) return tl::unexpected(reader.error());
-  auto subject = subject_of(*reader, file, profile, mixer);
+  auto subject = subject_of(**reader, file, profile, mixer);
   if (!subject) return tl::unexpected(subject.error());
   // Each parameter of a file has a value at the first tick.
   Trace first;
-  if (auto read = reader->next_part(1, first); !read) return tl::unexpected(read.error());
+  if (auto read = (*reader)->next_part(1, first); !read) return tl::unexpected(read.error());
   RecordedParts parts(*std::move(reader), *std::move(subject));
   note_ignored(first.ignored_columns, parts.notes_);
   parts.adapt_parameters(first);
@@ -179,7 +180,7 @@ void RecordedParts::override_parameter(const ParameterChange& change) {
 }
 
 Result<void> RecordedParts::next_part(std::size_t most, Trace& part) {
-  if (auto read = reader_.next_part(most, part); !read) return read;
+  if (auto read = reader_->next_part(most, part); !read) return read;
   auto& changes = part.parameters;
   std::erase_if(changes,
                 [&](const ParameterChange& change) { return foreign_.contains(change.name); });
@@ -198,7 +199,7 @@ Result<void> RecordedParts::next_part(std::size_t most, Trace& part) {
 
 Result<void> RecordedParts::rewind() {
   is_at_begin_ = true;
-  return reader_.rewind();
+  return reader_->rewind();
 }
 
 Result<Recorded> read_recorded(const std::filesystem::path& file, const std::string& profile,

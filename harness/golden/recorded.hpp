@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <set>
 #include <string>
 #include <utility>
@@ -10,7 +11,6 @@
 
 #include "harness/core/result.hpp"
 #include "harness/loop/open_loop.hpp"
-#include "harness/trace/csv.hpp"
 #include "harness/trace/trace_parts.hpp"
 
 namespace attest {
@@ -32,8 +32,8 @@ class RecordedParts final : public TraceParts {
   static Result<RecordedParts> open(const std::filesystem::path& file,
                                     const std::string& profile = "", const std::string& mixer = "");
 
-  const std::string& file() const override { return reader_.file(); }
-  const ChannelSet& present() const override { return reader_.present(); }
+  const std::string& file() const override { return reader_->file(); }
+  const ChannelSet& present() const override { return reader_->present(); }
   const ModuleUnderTest& subject() const { return subject_; }
   const std::vector<std::string>& notes() const { return notes_; }
 
@@ -45,12 +45,12 @@ class RecordedParts final : public TraceParts {
   Result<void> rewind() override;
 
  private:
-  RecordedParts(TraceReader reader, ModuleUnderTest subject)
+  RecordedParts(std::unique_ptr<TraceParts> reader, ModuleUnderTest subject)
       : reader_(std::move(reader)), subject_(std::move(subject)) {}
   void adapt_parameters(const Trace& first);
   void give_cells(const Trace& first);
 
-  TraceReader reader_;
+  std::unique_ptr<TraceParts> reader_;
   ModuleUnderTest subject_;
   std::vector<std::string> notes_;
   std::set<std::string> foreign_;       // parameters of the file that are left out

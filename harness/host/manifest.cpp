@@ -144,28 +144,29 @@ std::string stem_of(const std::string& vector_id) {
 
 }  // namespace
 
-std::filesystem::path input_file(const std::string& vector_id, TableFormat format) {
-  return fmt::format("{}.{}", stem_of(vector_id), name_of(format));
+std::filesystem::path input_file(const std::string& vector_id, const TraceFormat& format) {
+  return fmt::format("{}.{}", stem_of(vector_id), format.name);
 }
 
 std::string wanted_output_file(const std::filesystem::path& folder, const std::string& vector_id) {
   return (folder / (stem_of(vector_id) + ".out.csv")).string();
 }
 
-Result<std::optional<OutputFile>> find_output_file(const std::filesystem::path& folder,
-                                                   const std::string& vector_id) {
-  std::optional<OutputFile> found;
-  for (const TableFormat format : table_formats) {
-    const auto path = folder / fmt::format("{}.out.{}", stem_of(vector_id), name_of(format));
+Result<std::filesystem::path> find_output_file(const std::filesystem::path& folder,
+                                               const std::string& vector_id) {
+  std::filesystem::path found;
+  for (const TraceFormat& format : trace_formats()) {
+    if (format.read_table == nullptr) continue;
+    const auto path = folder / fmt::format("{}.out.{}", stem_of(vector_id), format.name);
     // A symbolic link counts as a file even if its target is missing: reading it gives an error.
     std::error_code ignored;
     const auto status = std::filesystem::symlink_status(path, ignored);
     if (!std::filesystem::exists(status)) continue;
-    if (found) {
-      return fail_at(found->path.string(),
+    if (!found.empty()) {
+      return fail_at(found.string(),
                      fmt::format("there is also {}; remove one of them", path.string()));
     }
-    found = OutputFile{path, format};
+    found = path;
   }
   return found;
 }

@@ -156,9 +156,22 @@ bool write_all(const std::string& path, const Table& table, const Matio& matio) 
   return true;
 }
 
+Result<void> check_lengths(const std::filesystem::path& path, const Table& table) {
+  if (table.empty()) return fail_at(path.string(), "has no column of numbers");
+  for (const Column& column : table) {
+    if (column.values.size() == table.front().values.size()) continue;
+    return fail_at(path.string(),
+                   fmt::format("`{}` has {} values, `{}` has {}; each column needs one for "
+                               "each tick",
+                               column.name, column.values.size(), table.front().name,
+                               table.front().values.size()));
+  }
+  return {};
+}
+
 }  // namespace
 
-Result<Table> read_mat(const std::filesystem::path& path) {
+Result<Table> read_mat(const std::filesystem::path& path, std::size_t) {
   if (auto checked = check_mat_layout(path); !checked) return tl::unexpected(checked.error());
   const auto& matio = loaded_matio();
   if (!matio) return tl::unexpected(matio.error());
@@ -170,25 +183,27 @@ Result<Table> read_mat(const std::filesystem::path& path) {
     auto values = numbers_in(*variable);
     if (values && variable->name != nullptr) table.push_back({variable->name, *std::move(values)});
   }
+  if (auto checked = check_lengths(path, table); !checked) return tl::unexpected(checked.error());
   return table;
 }
 
-Result<void> write_mat(const std::filesystem::path& path, const Table& table) {
+Result<void> write_mat(AtomicFile file, const Trace& trace) {
+  const std::string path = file.path().string();
   const auto& matio = loaded_matio();
   if (!matio) return tl::unexpected(matio.error());
   // libmatio can only write to a path. The path is that of a file in memory, which leaves no file
   // behind.
   const int memory = ::memfd_create("attest.mat", MFD_CLOEXEC);
-  if (memory < 0) return fail_at(path.string(), "no memory to write the file in");
+  if (memory < 0) return fail_at(path, "no memory to write the file in");
   const std::string in_memory = fmt::format("/proc/self/fd/{}", memory);
-  const bool is_written = write_all(in_memory, table, *matio);
+  const bool is_written = write_all(in_memory, table_of(trace), *matio);
   std::string bytes(static_cast<std::size_t>(std::max<off_t>(::lseek(memory, 0, SEEK_END), 0)), 0);
   const auto count = ::pread(memory, bytes.data(), bytes.size(), 0);
   ::close(memory);
   if (!is_written || count != static_cast<ssize_t>(bytes.size())) {
-    return fail_at(path.string(), "libmatio cannot write the table");
+    return fail_at(path, "libmatio cannot write the table");
   }
-  return write_file(path, bytes);
+  return file.commit(bytes);
 }
 
 }  // namespace attest

@@ -7,7 +7,6 @@
 
 #include "harness/host/manifest.hpp"
 #include "harness/host/recorded_outputs.hpp"
-#include "harness/host/table_file.hpp"
 #include "harness/port/profiles.hpp"
 
 namespace attest {
@@ -54,13 +53,13 @@ class RecordedHost final : public PortHost {
     }
     const auto file = find_output_file(folder_, trace.source);
     if (!file) return unusable(file.error());
-    if (!*file || !manifest_.vectors.contains(trace.source)) {
+    if (file->empty() || !manifest_.vectors.contains(trace.source)) {
       return unanswered("not answered: the folder has no outputs of this vector");
     }
     // One row more than there are ticks shows that the file has too many.
-    const auto table = read_table((*file)->path, (*file)->format, trace.samples.size() + 1);
+    const auto table = read_as<&TraceFormat::read_table>(*file, trace.samples.size() + 1);
     if (!table) return unusable(table.error());
-    auto set = set_recorded_outputs(*table, manifest_, (*file)->path.string(), trace);
+    auto set = set_recorded_outputs(*table, manifest_, file->string(), trace);
     if (!set) return unusable(set.error());
     return std::nullopt;
   }
@@ -91,7 +90,7 @@ class RecordedHost final : public PortHost {
 bool has_outputs(const std::filesystem::path& folder, const Manifest& manifest) {
   return std::any_of(manifest.vectors.begin(), manifest.vectors.end(), [&](const auto& vector) {
     const auto file = find_output_file(folder, vector.first);
-    return !file || *file;  // several files, an error here, are outputs too
+    return !file || !file->empty();  // several files, an error here, are outputs too
   });
 }
 
@@ -113,7 +112,7 @@ Result<std::unique_ptr<PortHost>> open_recorded_host(const std::filesystem::path
   if (!has_outputs(folder, *manifest)) {
     return fail_at(folder.string(),
                    fmt::format("has no outputs; write those of {} to {}, for example",
-                               input_file(manifest->vectors.begin()->first, TableFormat::csv)
+                               input_file(manifest->vectors.begin()->first, trace_formats().front())
                                    .replace_extension()
                                    .string(),
                                wanted_output_file(folder, manifest->vectors.begin()->first)));

@@ -18,7 +18,9 @@ struct Column {
 
 using Table = std::vector<Column>;
 
-// The inputs and parameters of a trace, in the order of its CSV columns.
+// All columns of a trace, in the order of its CSV columns.
+Table table_of(const Trace& trace);
+// Those of the inputs and parameters.
 Table inputs_of(const Trace& trace);
 
 // The name as an identifier of MATLAB, C or Python. Names with the same identifier are the same

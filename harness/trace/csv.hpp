@@ -33,30 +33,9 @@ namespace attest {
 // RereadableFile::open().
 Result<Trace> read_csv(const std::filesystem::path& path, TraceNeed need);
 
-// Reads a trace tick by tick, in memory that does not grow with the length of the trace. But the
-// content of a pipe is kept in memory.
-class TraceReader final : public TraceParts {
- public:
-  static Result<TraceReader> open(const std::filesystem::path& path, TraceNeed need);
-  TraceReader(TraceReader&&) noexcept;
-  ~TraceReader() override;
-
-  const std::string& file() const override;
-  const ChannelSet& present() const override;
-  const std::vector<std::string>& ignored() const;  // see Trace::ignored_columns
-
-  // Reads the next tick. Replaces `changes` by the changes of parameters at this tick. Returns
-  // false after the last tick. Errors: those of read_csv().
-  Result<bool> next(Sample& sample, std::vector<ParameterChange>& changes);
-
-  Result<void> next_part(std::size_t most, Trace& part) override;
-  Result<void> rewind() override;
-
- private:
-  struct Impl;
-  explicit TraceReader(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
-};
+// Reads a trace part by part, in memory that does not grow with the length of the trace. But the
+// content of a pipe is kept in memory. Errors: those of read_csv(), also in next_part().
+Result<std::unique_ptr<TraceParts>> open_csv(const std::filesystem::path& path, TraceNeed need);
 
 // The columns to write.
 struct CsvColumns {

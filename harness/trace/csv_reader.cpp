@@ -41,148 +41,141 @@ class ParameterColumns {
   std::vector<std::optional<std::uint32_t>> values_;  // bits of the values last set
 };
 
-}  // namespace
-
-struct TraceReader::Impl {
-  RereadableFile source;
-  TraceNeed need;
-  CsvRows rows;
-  bool counts_rows = false;  // instead of a column of timestamps
-  ChannelSet present{};
-  ParameterColumns parameters{{}};
-  std::vector<std::string> ignored{};  // names of columns
-  std::vector<char> row{};
-  std::size_t tick = 0;
-  std::uint64_t last_timestamp = 0;
-
+class CsvReader final : public TraceParts {
+ public:
   // `file`: the name in messages.
-  static Result<std::unique_ptr<Impl>> open(RereadableFile source, const std::string& file,
-                                            TraceNeed need) {
-    auto rows = CsvRows::open(source.path(), CsvRows::Unnamed::refused, file);
+  CsvReader(RereadableFile source, std::string file, TraceNeed need)
+      : source_(std::move(source)), file_(std::move(file)), need_(need) {}
+
+  const std::string& file() const override { return file_; }
+  const ChannelSet& present() const override { return present_; }
+
+  // Opens the file (again).
+  Result<void> rewind() override {
+    auto rows = CsvRows::open(source_.path(), CsvRows::Unnamed::refused, file_);
     if (!rows) return tl::unexpected(rows.error());
-    auto impl = std::make_unique<Impl>(Impl{std::move(source), need, std::move(*rows)});
-    const auto done =
-        has_mixer_columns(impl->rows) ? impl->set_mixer_columns() : impl->set_columns();
-    if (!done) return tl::unexpected(done.error());
-    return impl;
+    rows_ = *std::move(rows);
+    tick_ = 0;
+    present_.reset();
+    counts_rows_ = has_mixer_columns(*rows_);
+    return counts_rows_ ? set_mixer_columns() : set_columns();
   }
 
+  Result<void> next_part(std::size_t most, Trace& part) override {
+    if (most == whole_trace) {
+      if (auto limited = rows_->limit_size(); !limited) return limited;
+    }
+    part.source = file_;
+    part.present = present_;
+    part.ignored_columns = ignored_;
+    part.samples.clear();
+    part.parameters.clear();
+    while (part.samples.size() < most) {
+      const auto more = next(part);
+      if (!more) return tl::unexpected(more.error());
+      if (!*more) return {};
+      if (part.samples.size() == 1) reserve(most, part);
+    }
+    return {};
+  }
+
+ private:
   Result<void> set_mixer_columns() {
-    counts_rows = true;
-    present.set(timestamp_channel);
-    auto columns = mixer_columns_of(rows, present);
+    present_.set(timestamp_channel);
+    auto columns = mixer_columns_of(*rows_, present_);
     if (!columns) return tl::unexpected(columns.error());
-    rows.set_columns(*std::move(columns));
+    rows_->set_columns(*std::move(columns));
     make_row();
     return {};
   }
 
   Result<void> set_columns() {
-    auto layout = layout_of(rows, module_with(rows.header()), need);
+    auto layout = layout_of(*rows_, module_with(rows_->header()), need_);
     if (!layout) return tl::unexpected(layout.error());
-    present = layout->present;
-    parameters = ParameterColumns(std::move(layout->parameters));
-    ignored = std::move(layout->ignored);
-    rows.set_columns(std::move(layout->columns));
+    present_ = layout->present;
+    parameters_ = ParameterColumns(std::move(layout->parameters));
+    ignored_ = std::move(layout->ignored);
+    rows_->set_columns(std::move(layout->columns));
     make_row();
-    return check_need(present, need, rows.file());
+    return check_need(present_, need_, file_);
   }
 
   // The channels that are no columns are 0.
   void make_row() {
-    row.resize(parameters_offset + parameters.size());
+    row_.resize(parameters_offset + parameters_.size());
     const Sample zero;
-    std::memcpy(row.data(), &zero, sizeof zero);
+    std::memcpy(row_.data(), &zero, sizeof zero);
   }
 
   Result<void> check_timestamp(const Sample& sample) const {
-    if (tick == 0 || sample.in.timestamp > last_timestamp) return {};
-    const auto column = std::find(rows.header().begin(), rows.header().end(), "timestamp");
-    return rows.fail_at_cell(static_cast<std::size_t>(column - rows.header().begin()),
-                             fmt::format("timestamp {} is not after the {} of the row above; "
-                                         "timestamps must increase",
-                                         sample.in.timestamp, last_timestamp));
+    if (tick_ == 0 || sample.in.timestamp > last_timestamp_) return {};
+    const auto column = std::find(rows_->header().begin(), rows_->header().end(), "timestamp");
+    return rows_->fail_at_cell(static_cast<std::size_t>(column - rows_->header().begin()),
+                               fmt::format("timestamp {} is not after the {} of the row above; "
+                                           "timestamps must increase",
+                                           sample.in.timestamp, last_timestamp_));
   }
 
   // Makes room for the rows that follow, with some to spare because their lengths differ. Growing
   // step by step would touch twice the memory. The limit holds if the first row is unusually short.
   void reserve(std::size_t most, Trace& part) const {
     constexpr std::size_t most_reserved = 100'000;
-    const std::size_t left = std::min(rows.rows_left(), most_reserved);
+    const std::size_t left = std::min(rows_->rows_left(), most_reserved);
     part.samples.reserve(std::min(most, 2 + left + left / 4));
   }
 
-  Result<bool> next(Sample& sample, std::vector<ParameterChange>& changes) {
-    changes.clear();
-    const auto more = rows.next(row.data());
+  // Appends the next tick. Returns false after the last one.
+  Result<bool> next(Trace& part) {
+    const auto more = rows_->next(row_.data());
     if (!more) return more;
-    if (!*more && tick == 0) {
-      return fail_at(rows.file(), "no rows; a trace has a row for each tick", 2);
-    }
+    if (!*more && tick_ == 0) return fail_at(file_, "no rows; a trace has a row for each tick", 2);
     if (!*more) return false;
-    std::memcpy(&sample, row.data(), sizeof sample);
-    if (counts_rows) sample.in.timestamp = tick;
+    Sample& sample = part.samples.emplace_back();
+    std::memcpy(&sample, row_.data(), sizeof sample);
+    if (counts_rows_) sample.in.timestamp = tick_;
     if (auto increases = check_timestamp(sample); !increases) {
       return tl::unexpected(increases.error());
     }
-    if (tick == 0 || (sample.in.updated & ATTEST_UPDATED_PARAMETER_UPDATE) != 0) {
-      parameters.record(tick, row.data() + parameters_offset, changes);
+    if (tick_ == 0 || (sample.in.updated & ATTEST_UPDATED_PARAMETER_UPDATE) != 0) {
+      parameters_.record(part.samples.size() - 1, row_.data() + parameters_offset, part.parameters);
     }
-    last_timestamp = sample.in.timestamp;
-    ++tick;
+    last_timestamp_ = sample.in.timestamp;
+    ++tick_;
     return true;
   }
+
+  RereadableFile source_;
+  std::string file_;
+  TraceNeed need_;
+  std::optional<CsvRows> rows_;  // REQUIRES: rewind() succeeded
+  bool counts_rows_ = false;     // instead of a column of timestamps
+  ChannelSet present_;
+  ParameterColumns parameters_{{}};
+  std::vector<std::string> ignored_;  // names of columns
+  std::vector<char> row_;
+  std::size_t tick_ = 0;
+  std::uint64_t last_timestamp_ = 0;
 };
 
-TraceReader::TraceReader(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-TraceReader::TraceReader(TraceReader&&) noexcept = default;
-TraceReader::~TraceReader() = default;
+}  // namespace
 
-const std::string& TraceReader::file() const { return impl_->rows.file(); }
-const ChannelSet& TraceReader::present() const { return impl_->present; }
-const std::vector<std::string>& TraceReader::ignored() const { return impl_->ignored; }
-
-Result<bool> TraceReader::next(Sample& sample, std::vector<ParameterChange>& changes) {
-  return impl_->next(sample, changes);
-}
-
-Result<TraceReader> TraceReader::open(const std::filesystem::path& path, TraceNeed need) {
+Result<std::unique_ptr<TraceParts>> open_csv(const std::filesystem::path& path, TraceNeed need) {
   // The file may be opened twice.
   auto source = RereadableFile::open(path);
   if (!source) return tl::unexpected(source.error());
-  auto impl = Impl::open(*std::move(source), path.string(), need);
-  if (!impl) return tl::unexpected(impl.error());
-  return TraceReader(*std::move(impl));
+  auto reader = std::make_unique<CsvReader>(*std::move(source), path.string(), need);
+  if (auto begun = reader->rewind(); !begun) return tl::unexpected(begun.error());
+  return reader;
 }
 
-Result<void> TraceReader::rewind() {
-  auto again = Impl::open(std::move(impl_->source), impl_->rows.file(), impl_->need);
-  if (!again) return tl::unexpected(again.error());
-  impl_ = *std::move(again);
-  return {};
-}
-
-Result<void> TraceReader::next_part(std::size_t most, Trace& part) {
-  if (most == whole_trace) {
-    if (auto limited = impl_->rows.limit_size(); !limited) return limited;
+Result<Trace> read_csv(const std::filesystem::path& path, TraceNeed need) {
+  const auto reader = open_csv(path, need);
+  if (!reader) return tl::unexpected(reader.error());
+  Trace trace;
+  if (auto read = (*reader)->next_part(whole_trace, trace); !read) {
+    return tl::unexpected(read.error());
   }
-  part.source = file();
-  part.present = present();
-  part.ignored_columns = ignored();
-  part.samples.clear();
-  part.parameters.clear();
-  Sample sample;
-  std::vector<ParameterChange> changes;
-  while (part.samples.size() < most) {
-    const auto more = next(sample, changes);
-    if (!more) return tl::unexpected(more.error());
-    if (!*more) return {};
-    for (ParameterChange& change : changes) change.tick = part.samples.size();
-    part.samples.push_back(sample);
-    if (part.samples.size() == 1) impl_->reserve(most, part);
-    part.parameters.insert(part.parameters.end(), changes.begin(), changes.end());
-  }
-  return {};
+  return trace;
 }
 
 }  // namespace attest

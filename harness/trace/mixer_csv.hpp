@@ -1,5 +1,5 @@
 // The columns of mixer traces as recorded from the firmware: the inputs and outputs of a mixer, one
-// row per call. TraceReader (csv.hpp) reads them, with the same rules for numbers and errors.
+// row per call. open_csv() reads them, with the same rules for numbers and errors.
 //
 // Columns: roll, pitch, yaw, thrust, delta_out_max, out[0] ... out[rotors - 1], lower_limit,
 // upper_limit, yaw_limit. The geometry is not in the file: provenance.toml has it under [mixers].

@@ -1,12 +1,9 @@
 #include "harness/ulog/flight_log.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
-#include <fstream>
 #include <limits>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -280,27 +277,12 @@ class LogReading {
 
 }  // namespace
 
-bool is_log(const std::filesystem::path& path) {
-  if (path.extension() == ".ulg" || path.extension() == ".ulog") return true;
-  std::error_code unknown;
-  // Of a pipe the bytes could be read only once.
-  if (!std::filesystem::is_regular_file(path, unknown)) return false;
-  std::array<char, ulog::file_magic.size()> begin{};
-  std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
-  return std::string_view(begin.data(), begin.size()) == ulog::file_magic;
-}
-
-Result<FlightLog> open_flight_log(const std::filesystem::path& path,
-                                  const std::vector<std::string>& assumed) {
-  auto log = ulog::read_contents(path);
-  if (!log) return tl::unexpected(log.error());
-  return LogReading(path, *log, assumed).read();
-}
-
 Result<FlightLog> read_flight_log(const std::filesystem::path& path,
-                                  const std::vector<std::string>& assumed) {
-  auto log = open_flight_log(path, assumed);
-  if (!log) return log;
+                                  const std::vector<std::string>& assumed, bool whole) {
+  auto contents = ulog::read_contents(path);
+  if (!contents) return tl::unexpected(contents.error());
+  auto log = LogReading(path, *contents, assumed).read();
+  if (!log || !whole) return log;
   for (LoggedUnit& unit : log->units) {
     if (!unit.ticks) continue;
     const auto ticks = std::exchange(unit.ticks, nullptr);

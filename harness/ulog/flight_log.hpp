@@ -101,18 +101,13 @@ struct FlightLog {
 // `assumed` has some of assumption_words(). If it is empty, the default words are used; for a log
 // of attest, none. The words apply to topics without a sample in the log. Errors: the file cannot
 // be read or is not a ULog; it has too little for every unit; those of check_assumed().
-Result<FlightLog> read_flight_log(const std::filesystem::path& path,
-                                  const std::vector<std::string>& assumed = {});
-
-// The same, with LoggedUnit::ticks. Their memory grows with the log: it has the values of the
+//
+// Not `whole`: with LoggedUnit::ticks. Their memory grows with the log: it has the values of the
 // topics of the units, each in the bytes of its type.
-Result<FlightLog> open_flight_log(const std::filesystem::path& path,
-                                  const std::vector<std::string>& assumed = {});
+Result<FlightLog> read_flight_log(const std::filesystem::path& path,
+                                  const std::vector<std::string>& assumed = {}, bool whole = true);
 
 // The ticks of the unit, from the first one on. REQUIRES: the unit outlives them, and has ticks.
 std::shared_ptr<LoggedTicks> ticks_of(const LoggedUnit& unit);
-
-// Whether the file begins as a ULog, or its name ends with .ulg or .ulog.
-bool is_log(const std::filesystem::path& path);
 
 }  // namespace attest

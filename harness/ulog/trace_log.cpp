@@ -232,6 +232,8 @@ Result<void> write_ticks(const Trace& trace, const Topics& topics, ulog::Writer&
   return {};
 }
 
+}  // namespace
+
 Result<void> write_log(AtomicFile file, const Trace& trace) {
   const Module module = module_of(trace.present);
   if (!info_of(module).is_unit()) {
@@ -252,20 +254,6 @@ Result<void> write_log(AtomicFile file, const Trace& trace) {
   if (auto defined = define_topics(topics, writer); !defined) return defined;
   if (auto written = write_ticks(trace, topics, writer); !written) return written;
   return writer.commit();
-}
-
-}  // namespace
-
-Result<void> write_trace(const std::filesystem::path& path, const Trace& trace) {
-  return AtomicFile::open(path).and_then(
-      [&](AtomicFile&& file) { return write_trace(std::move(file), trace); });
-}
-
-Result<void> write_trace(AtomicFile file, const Trace& trace) {
-  if (file.path().extension() == ".ulg") return write_log(std::move(file), trace);
-  CsvColumns columns = all_columns(trace);
-  columns.plant = !trace.plant.empty();
-  return write_csv(std::move(file), trace, columns);
 }
 
 }  // namespace attest

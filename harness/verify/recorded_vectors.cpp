@@ -42,8 +42,8 @@ Result<Manifest> manifest_for(const std::filesystem::path& folder, std::optional
                   manifest->fixed_step ? manifest->fixed_step->to_string() + " Hz" : "none"));
 }
 
-Result<void> write_vector(const std::filesystem::path& folder, TableFormat format,
-                          const Case& the_case, const std::string& id, const Trace& inputs) {
+Result<void> write_vector(const std::filesystem::path& folder, const TraceFormat& format,
+                          const Case& the_case, const std::string& id, Trace inputs) {
   const std::filesystem::path file = folder / input_file(id, format);
   std::error_code failed;
   std::filesystem::create_directories(file.parent_path(), failed);
@@ -53,12 +53,15 @@ Result<void> write_vector(const std::filesystem::path& folder, TableFormat forma
   std::map<std::string, std::string> mixers;
   if (the_case.module == Module::mixer) mixers[file.stem().string()] = the_case.mixer;
   if (auto added = add_origin(file.parent_path(), the_case.profile, mixers); !added) return added;
-  return write_inputs(file, format, inputs);
+  inputs.present &= ~channels_of(the_case.module, "out/");
+  return AtomicFile::open(file).and_then(
+      [&](AtomicFile&& out) { return format.write(std::move(out), inputs); });
 }
 
 }  // namespace
 
-Result<std::size_t> write_recorded_vectors(const std::filesystem::path& folder, TableFormat format,
+Result<std::size_t> write_recorded_vectors(const std::filesystem::path& folder,
+                                           const TraceFormat& format,
                                            const std::vector<SelectedCase>& cases,
                                            std::optional<Rate> fixed_step) {
   auto manifest = manifest_for(folder, fixed_step);
@@ -104,7 +107,7 @@ Result<RecordedVectors> check_recorded_vectors(const std::filesystem::path& fold
       const auto known = manifest->vectors.find(id);
       const auto file = find_output_file(folder, id);
       if (!file) return tl::unexpected(file.error());
-      if (known == manifest->vectors.end() || !*file) continue;
+      if (known == manifest->vectors.end() || file->empty()) continue;
       if (known->second !=
           sha256_of_inputs(inputs_for(port, the_case, configuration.rate.motor_unit))) {
         return fail_at((folder / manifest_name).string(),
@@ -114,8 +117,8 @@ Result<RecordedVectors> check_recorded_vectors(const std::filesystem::path& fold
                                    id));
       }
       if (found.answered++ > 0) continue;
-      found.first = (*file)->path.string();
-      const auto table = read_table(found.first, (*file)->format, 1);
+      found.first = file->string();
+      const auto table = read_as<&TraceFormat::read_table>(*file, std::size_t{1});
       if (table) found.ignored = ignored_columns(*table, *manifest, the_case.module);
     }
   }

@@ -9,7 +9,7 @@
 #include "harness/casefile/select.hpp"
 #include "harness/core/result.hpp"
 #include "harness/host/declarations.hpp"
-#include "harness/host/table_file.hpp"
+#include "harness/host/trace_format.hpp"
 
 namespace attest {
 
@@ -19,7 +19,8 @@ namespace attest {
 // `fixed_step`. The provenance.toml next to the files has the mixer definitions. Returns the
 // number of files. Errors: a file cannot be read or written; the manifest has another fixed step;
 // no vector is left.
-Result<std::size_t> write_recorded_vectors(const std::filesystem::path& folder, TableFormat format,
+Result<std::size_t> write_recorded_vectors(const std::filesystem::path& folder,
+                                           const TraceFormat& format,
                                            const std::vector<SelectedCase>& cases,
                                            std::optional<Rate> fixed_step);
 

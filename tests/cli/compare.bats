@@ -171,6 +171,29 @@ load common
   has "unit.html: 15 of"
 }
 
+@test "the first bytes of a file choose its format, and else its name" {
+  local format
+  for format in csv ulg ulog mat; do
+    "$ATTEST" record px4-v1.5.5/rates/p_alone --rate 250 --out "a.$format"
+  done
+  cp a.ulog log.csv
+  for format in ulg ulog; do
+    run "$ATTEST" compare "a.$format" a.csv --level exact
+    [ "$status" -eq 0 ]
+    has "47 of 47 common signals agree"
+  done
+  run "$ATTEST" replay a.csv a.ulg a.ulog log.csv
+  [ "$status" -eq 0 ]
+  has "PASS 4 of 4 traces conform"
+  [ "$(head -c 6 a.mat)" = MATLAB ]
+  cp a.mat table.csv
+  for command in plot replay "compare a.csv"; do
+    run "$ATTEST" $command table.csv
+    [ "$status" -eq 2 ]
+    has "table.csv: is a MAT file; this needs one of the format csv"
+  done
+}
+
 # without FILE NAME: the trace FILE without its column NAME, on stdout.
 without() {
   awk -F, -v OFS=, -v name="$2" '

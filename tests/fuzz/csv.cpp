@@ -48,18 +48,19 @@ void require_written(const Trace& trace, TraceNeed need) {
 }
 
 void require_streamed(const std::filesystem::path& file, const Trace& trace, TraceNeed need) {
-  auto reader = TraceReader::open(file, need);
+  const auto reader = open_csv(file, need);
   require(reader.has_value(), "a trace that is read as a whole can be read tick by tick");
   Trace streamed;
-  streamed.present = reader->present();
-  std::vector<ParameterChange> changes;
-  for (Sample sample{};;) {
-    const auto more = reader->next(sample, changes);
-    require(more.has_value(), "every tick can be read");
-    if (!*more) break;
-    streamed.samples.push_back(sample);
-    streamed.parameters.insert(streamed.parameters.end(), changes.begin(), changes.end());
-  }
+  const auto ticks = for_each_part(**reader, 1, [&](const Trace& part, std::size_t tick, bool) {
+    streamed.present = part.present;
+    streamed.samples.insert(streamed.samples.end(), part.samples.begin(), part.samples.end());
+    for (ParameterChange change : part.parameters) {
+      change.tick = tick;
+      streamed.parameters.push_back(change);
+    }
+    return true;
+  });
+  require(ticks.has_value(), "every tick can be read");
   require_same(trace, streamed);
 }
 

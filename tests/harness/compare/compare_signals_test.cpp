@@ -164,13 +164,13 @@ TEST(EstimateShift, NoiseAndConstantsHaveNone) {
 TEST(TimedSignals, CsvOfAnyOriginNeedsATimeOnly) {
   TemporaryDirectory directory;
   const auto error = [&](const char* text) {
-    const auto read = read_timed_signals(directory.write("a.csv", text));
+    const auto read = signals_of_csv(directory.write("a.csv", text));
     return read ? "" : read.error().message;
   };
   EXPECT_THAT(error("x,y\n1,2\n"), HasSubstr("no column timestamp"));
   EXPECT_THAT(error("timestamp\n1\n"), HasSubstr("no sample of a signal"));
   EXPECT_THAT(error("timestamp,x\n1,a\n"), HasSubstr("`a` is not a number"));
-  const auto read = read_timed_signals(
+  const auto read = signals_of_csv(
       directory.write("a.csv",
                       "timestamp,in/vehicle_rates_setpoint.roll,plant/rotor_speed[0],b\n"
                       "1,2,3,4\n1,5,6,7\n2,8,9,10\n"));

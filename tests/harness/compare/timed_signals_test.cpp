@@ -23,7 +23,7 @@ constexpr auto latest = static_cast<std::uint64_t>(latest_us);
 class TimedSignalsOfLog : public testing::Test {
  protected:
   TimedSignals read(const Crafted& log) {
-    auto signals = read_timed_signals(directory_.write("a.ulg", log.bytes()));
+    auto signals = signals_of_log(directory_.write("a.ulg", log.bytes()));
     EXPECT_TRUE(signals) << signals.error().message;
     return signals ? *std::move(signals) : TimedSignals{};
   }
@@ -110,7 +110,7 @@ TEST(EstimateShift, APeriodOfAnyLengthIsNoOverflow) {
 TEST(TimedSignals, RowsOfCsvWithExtremeTimesAreCounted) {
   TemporaryDirectory directory;
   const auto read =
-      read_timed_signals(directory.write("a.csv", "timestamp,x\n1,2\n18446744073709551615,3\n"));
+      signals_of_csv(directory.write("a.csv", "timestamp,x\n1,2\n18446744073709551615,3\n"));
   ASSERT_TRUE(read);
   EXPECT_THAT(read->all[0].values, ElementsAre(2));
   EXPECT_THAT(read->notes, ElementsAre(HasSubstr("1 rows left out, because their timestamps are "

@@ -45,6 +45,9 @@ Trace flown() {
 class TraceLog : public testing::Test {
  protected:
   std::filesystem::path path(const char* name) const { return directory_.path() / name; }
+  Result<void> write(const char* name, const Trace& trace) const {
+    return write_log(*AtomicFile::open(path(name)), trace);
+  }
 
   // "timestamp:value" of the data of a field.
   std::vector<std::string> logged(const char* topic, std::uint8_t multi_id, const char* field) {
@@ -70,7 +73,7 @@ class TraceLog : public testing::Test {
 };
 
 TEST_F(TraceLog, HasEachTopicWhenItIsNew) {
-  ASSERT_TRUE(write_trace(path("f.ulg"), flown()));
+  ASSERT_TRUE(write("f.ulg", flown()));
   EXPECT_THAT(logged("control_state", 0, "q[2]"),
               ElementsAre("4000:0.250000", "8000:1.250000", "12000:2.250000"));
   EXPECT_THAT(logged("vehicle_status", 0, "is_vtol"), ElementsAre("8000:7.000000"));
@@ -81,7 +84,7 @@ TEST_F(TraceLog, HasEachTopicWhenItIsNew) {
 }
 
 TEST_F(TraceLog, HasTheVehicleAtEachTick) {
-  ASSERT_TRUE(write_trace(path("f.ulg"), flown()));
+  ASSERT_TRUE(write("f.ulg", flown()));
   EXPECT_THAT(logged("vehicle_local_position", 0, "vy"),
               ElementsAre("4000:3.000000", "8000:3.000000", "12000:3.000000"));
   EXPECT_THAT(logged("rotor_speed", 0, "value[7]"), testing::SizeIs(3));
@@ -91,7 +94,7 @@ TEST_F(TraceLog, HasTheVehicleAtEachTick) {
 }
 
 TEST_F(TraceLog, HasParametersWhenTheyChange) {
-  ASSERT_TRUE(write_trace(path("f.ulg"), flown()));
+  ASSERT_TRUE(write("f.ulg", flown()));
   auto reader = ulog::Reader::open(path("f.ulg"));
   ASSERT_TRUE(reader);
   std::vector<float> values;
@@ -108,15 +111,10 @@ TEST_F(TraceLog, HasParametersWhenTheyChange) {
   EXPECT_GT(data_before_change, 10u);
 }
 
-TEST_F(TraceLog, OtherNamesAreCsvAndOtherModulesAnError) {
-  const auto written = write_trace(path("f.csv"), flown());
-  ASSERT_TRUE(written) << written.error().to_string();
-  const auto text = read_file(path("f.csv"));
-  ASSERT_TRUE(text);
-  EXPECT_THAT(*text, HasSubstr("plant/vehicle_local_position.vy"));
+TEST_F(TraceLog, OtherModulesAreAnError) {
   Trace mixer = flown();
   mixer.present = channels_of(Module::mixer);
-  EXPECT_THAT(write_trace(path("m.ulg"), mixer).error().message,
+  EXPECT_THAT(write("m.ulg", mixer).error().message,
               HasSubstr("a ULog is for traces of the controller or of a unit of it"));
   EXPECT_FALSE(std::filesystem::exists(path("m.ulg")));
 }

@@ -72,7 +72,7 @@ class UnitLog : public testing::TestWithParam<Module> {
 
 TEST_P(UnitLog, ReadsBackToTheSameTrace) {
   const Trace written = RandomTrace(GetParam()).trace();
-  ASSERT_TRUE(write_trace(path(), written));
+  ASSERT_TRUE(write_log(*AtomicFile::open(path()), written));
   const auto log = read_flight_log(path());
   ASSERT_TRUE(log) << log.error().message;
   EXPECT_TRUE(log->is_of_attest);
@@ -98,7 +98,7 @@ TEST_P(UnitLog, OfAFlightReadsBack) {
   Trace written = RandomTrace(GetParam()).trace();
   written.plant.resize(written.samples.size(), PlantSample{});
   for (PlantSample& plant : written.plant) plant.voltage_V = 12.5f;
-  ASSERT_TRUE(write_trace(path(), written));
+  ASSERT_TRUE(write_log(*AtomicFile::open(path()), written));
   const auto log = read_flight_log(path());
   ASSERT_TRUE(log) << log.error().message;
   EXPECT_EQ(log->units[0].module, GetParam());
@@ -116,7 +116,7 @@ TEST_P(UnitLog, OfAFlightReadsBack) {
 TEST_P(UnitLog, WithoutAnyOutputReadsBack) {
   Trace written = RandomTrace(GetParam()).trace();
   for (Sample& sample : written.samples) sample.clear_outputs();
-  ASSERT_TRUE(write_trace(path(), written));
+  ASSERT_TRUE(write_log(*AtomicFile::open(path()), written));
   const auto log = read_flight_log(path());
   ASSERT_TRUE(log) << log.error().message;
   EXPECT_EQ(log->units[0].trace.present, written.present);

@@ -101,7 +101,7 @@ TEST_F(LogOfPx4, HasTheSameTicksInParts) {
     if (time == 25000) add_mode(time + 50, true, true);
   }
   const FlightLog whole = read();
-  const auto opened = open_flight_log(path_);
+  const auto opened = read_flight_log(path_, {}, false);
   ASSERT_TRUE(opened);
   const LoggedUnit& unit = whole.units[0];
   const auto& ticks = opened->units[0].ticks;

@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 
 #include "harness/core/file.hpp"
+#include "harness/host/trace_format.hpp"
 #include "harness/loop/case_timing.hpp"
 #include "harness/trace/csv.hpp"
-#include "harness/ulog/trace_log.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
 #include "tests/harness/realtime/flights.hpp"
 #include "tests/harness/times.hpp"
@@ -62,7 +62,7 @@ class Simulate : public testing::Test {
     auto flight = simulate_flight(case_, plan_, host);
     if (!flight) return tl::unexpected(flight.error());
     if (flight->flown.trace.samples.empty()) return flight->result;
-    if (auto done = write_trace(out_, flight->flown.trace); !done)
+    if (auto done = write_trace(*AtomicFile::open(out_), flight->flown.trace); !done)
       return tl::unexpected(done.error());
     return flight->result;
   }

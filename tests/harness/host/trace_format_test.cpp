@@ -1,4 +1,4 @@
-#include "harness/host/table_file.hpp"
+#include "harness/host/trace_format.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -18,23 +18,6 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-class TableFile : public testing::Test {
- protected:
-  std::filesystem::path path(const std::string& name) const { return directory_.path() / name; }
-
-  Result<Table> read(const std::string& name, TableFormat format, const std::string& bytes) {
-    EXPECT_TRUE(write_file(path(name), bytes));
-    return read_table(path(name), format);
-  }
-
-  std::string error(const std::string& name, TableFormat format, const std::string& bytes) {
-    const auto table = read(name, format, bytes);
-    return table ? "no error" : table.error().to_string();
-  }
-
-  TemporaryDirectory directory_;
-};
-
 Trace two_ticks() {
   Trace trace;
   for (const std::uint64_t timestamp : {5'000'000u, 5'004'000u}) {
@@ -50,48 +33,92 @@ Trace two_ticks() {
   return trace;
 }
 
-TEST_F(TableFile, InputsReadBackTheSameInEachFormat) {
-  const Trace trace = two_ticks();
-  const Table inputs = inputs_of(trace);
-  for (const TableFormat format : table_formats) {
-    const auto file = path(std::string("inputs.") + std::string(name_of(format)));
-    ASSERT_TRUE(write_inputs(file, format, trace));
-    const auto table = read_table(file, format);
+class TraceFormatTest : public testing::Test {
+ protected:
+  std::filesystem::path path(const std::string& name) const { return directory_.path() / name; }
+
+  Result<void> write(const std::string& name) const {
+    return write_trace(*AtomicFile::open(path(name)), two_ticks());
+  }
+
+  Result<Table> read(const std::string& name) const {
+    return read_as<&TraceFormat::read_table>(path(name), std::size_t{100});
+  }
+  Result<Table> read(const std::string& name, const std::string& bytes) const {
+    EXPECT_TRUE(write_file(path(name), bytes));
+    return read(name);
+  }
+
+  std::string error(const std::string& name, const std::string& bytes) const {
+    const auto table = read(name, bytes);
+    return table ? "no error" : table.error().to_string();
+  }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(TraceFormatTest, TablesReadBackTheSameInEachFormat) {
+  const Table all = table_of(two_ticks());
+  for (const std::string name : {"a.csv", "a.mat"}) {
+    ASSERT_TRUE(write(name));
+    const auto table = read(name);
     ASSERT_TRUE(table) << table.error().to_string();
-    ASSERT_EQ(table->size(), inputs.size()) << name_of(format);
-    for (std::size_t i = 0; i < inputs.size(); ++i) {
-      EXPECT_EQ(identifier_of((*table)[i].name), identifier_of(inputs[i].name));
+    ASSERT_EQ(table->size(), all.size()) << name;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      EXPECT_EQ(identifier_of((*table)[i].name), identifier_of(all[i].name));
       ASSERT_EQ((*table)[i].values.size(), 2u);
       for (std::size_t row = 0; row < 2; ++row) {
         const auto read = static_cast<float>((*table)[i].values[row]);
-        const auto written = static_cast<float>(inputs[i].values[row]);
+        const auto written = static_cast<float>(all[i].values[row]);
         EXPECT_TRUE(read == written || (std::isnan(read) && std::isnan(written)))
-            << name_of(format) << " " << inputs[i].name;
+            << name << " " << all[i].name;
       }
     }
-    EXPECT_THAT(table->back().name, HasSubstr("MC_ROLL_P"));
-    EXPECT_THAT(table->back().values, ElementsAre(6.5, 7));
+    const Column& parameter = (*table)[inputs_of(two_ticks()).size() - 1];
+    EXPECT_THAT(parameter.name, HasSubstr("MC_ROLL_P"));
+    EXPECT_THAT(parameter.values, ElementsAre(6.5, 7));
   }
 }
 
-TEST_F(TableFile, ADamagedMatFileIsAnErrorOrLacksVariables) {
-  ASSERT_TRUE(write_inputs(path("a.mat"), TableFormat::mat, two_ticks()));
+TEST_F(TraceFormatTest, TheFirstBytesChooseItAndElseTheEnding) {
+  ASSERT_TRUE(write("a.mat"));
+  ASSERT_TRUE(write("a.ulog"));
+  for (const std::string name : {"a.mat", "a.ulog"}) {
+    const TraceFormat& format = format_of(path(name));
+    EXPECT_NE(format.name, "csv");
+    std::filesystem::rename(path(name), path("b.csv"));
+    EXPECT_EQ(format_of(path("b.csv")).name, format.name);
+  }
+  EXPECT_EQ(format_of(path("missing.ulg")).name, "ulg");
+  EXPECT_EQ(format_of(path("missing")).name, "csv");
+}
+
+TEST_F(TraceFormatTest, WhatAFormatCannotDoIsAnError) {
+  ASSERT_TRUE(write("a.mat"));
+  EXPECT_EQ(read_as<&TraceFormat::open>(path("a.mat"), TraceNeed::outputs).error().message,
+            "is a MAT file; this needs one of the format csv");
+  EXPECT_EQ(read_as<&TraceFormat::read_signals>(path("a.mat")).error().message,
+            "is a MAT file; this needs one of the format csv or ulg");
+}
+
+TEST_F(TraceFormatTest, ADamagedMatFileIsAnErrorOrLacksVariables) {
+  ASSERT_TRUE(write("a.mat"));
   const std::string whole = read_file(path("a.mat")).value();
-  const std::size_t columns = read_table(path("a.mat"), TableFormat::mat)->size();
+  const std::size_t columns = read("a.mat")->size();
   for (std::size_t size = 0; size < whole.size(); size += 61) {
-    const auto table = read("b.mat", TableFormat::mat, whole.substr(0, size));
+    const auto table = read("b.mat", whole.substr(0, size));
     EXPECT_TRUE(!table || table->size() < columns);
   }
-  EXPECT_THAT(error("b.mat", TableFormat::mat, "timestamp,x\n"), HasSubstr("is no MAT file"));
+  EXPECT_THAT(error("b.mat", "timestamp,x\n"), HasSubstr("is no MAT file"));
 }
 
-TEST_F(TableFile, AMatFileThatEndsInsideAVariableIsCutOff) {
-  ASSERT_TRUE(write_inputs(path("a.mat"), TableFormat::mat, two_ticks()));
+TEST_F(TraceFormatTest, AMatFileThatEndsInsideAVariableIsCutOff) {
+  ASSERT_TRUE(write("a.mat"));
   const std::string whole = read_file(path("a.mat")).value();
-  const std::size_t columns = read_table(path("a.mat"), TableFormat::mat)->size();
-  ASSERT_EQ(error("b.mat", TableFormat::mat, whole), "no error");
+  const std::size_t columns = read("a.mat")->size();
+  ASSERT_EQ(error("b.mat", whole), "no error");
   for (std::size_t missing = 1; missing < 300; ++missing) {
-    const auto table = read("b.mat", TableFormat::mat, whole.substr(0, whole.size() - missing));
+    const auto table = read("b.mat", whole.substr(0, whole.size() - missing));
     // A file that ends between two variables has fewer columns.
     const std::string error = table ? "" : table.error().to_string();
     EXPECT_TRUE(table ? table->size() < columns : error.find("is cut off") != std::string::npos)
@@ -135,49 +162,48 @@ std::string with_compressed_variables(const std::string& mat, std::size_t missin
 }
 
 // libmatio returns zeros, or other bytes of the file or of its memory.
-TEST_F(TableFile, AMatVariableWithFewerValuesThanItsDimensionsIsAnError) {
-  ASSERT_TRUE(write_inputs(path("a.mat"), TableFormat::mat, two_ticks()));
+TEST_F(TraceFormatTest, AMatVariableWithFewerValuesThanItsDimensionsIsAnError) {
+  ASSERT_TRUE(write("a.mat"));
   const std::string whole = read_file(path("a.mat")).value();
-  const std::size_t columns = read_table(path("a.mat"), TableFormat::mat)->size();
-  const auto compressed = read("b.mat", TableFormat::mat, with_compressed_variables(whole));
+  const std::size_t columns = read("a.mat")->size();
+  const auto compressed = read("b.mat", with_compressed_variables(whole));
   ASSERT_TRUE(compressed) << compressed.error().to_string();
   EXPECT_EQ(compressed->size(), columns);
   const std::string short_by_one = with_a_third_row(whole);
   for (const std::string& damaged : {short_by_one, with_compressed_variables(short_by_one)}) {
-    EXPECT_THAT(error("b.mat", TableFormat::mat, damaged),
+    EXPECT_THAT(error("b.mat", damaged),
                 AllOf(HasSubstr("b.mat: "), HasSubstr("the variable `timestamp` has 2 values, but "
                                                       "its dimensions are 3 x 1")));
   }
-  EXPECT_THAT(error("b.mat", TableFormat::mat, with_compressed_variables(whole, 9)),
+  EXPECT_THAT(error("b.mat", with_compressed_variables(whole, 9)),
               HasSubstr("a compressed variable is damaged"));
 }
 
 // Those with doubles, floats, and bytes, whose values are in the tag.
-TEST_F(TableFile, EachVariableOfAMatFileIsChecked) {
-  ASSERT_TRUE(write_inputs(path("a.mat"), TableFormat::mat, two_ticks()));
+TEST_F(TraceFormatTest, EachVariableOfAMatFileIsChecked) {
+  ASSERT_TRUE(write("a.mat"));
   const std::string whole = read_file(path("a.mat")).value();
   std::size_t variables = 0;
   for (std::size_t at = mat_header; at < whole.size(); at += mat_tag + mat_size_at(whole, at)) {
     std::string damaged = whole;
     for (const char rows : {'\0', '\1', '\3'}) {
       damaged[at + mat_dimension_at] = rows;
-      EXPECT_THAT(error("b.mat", TableFormat::mat, damaged), HasSubstr("but its dimensions are"));
+      EXPECT_THAT(error("b.mat", damaged), HasSubstr("but its dimensions are"));
     }
     ++variables;
   }
-  EXPECT_EQ(variables, inputs_of(two_ticks()).size());
+  EXPECT_EQ(variables, table_of(two_ticks()).size());
 }
 
-TEST_F(TableFile, ACsvTableMayHaveRowNumbersWithoutAName) {
-  const auto table = read("a.csv", TableFormat::csv, ",x,y\n0,1.5,+2e3\n1,nan,-inf\n");
+TEST_F(TraceFormatTest, ACsvTableMayHaveRowNumbersWithoutAName) {
+  const auto table = read("a.csv", ",x,y\n0,1.5,+2e3\n1,nan,-inf\n");
   ASSERT_TRUE(table) << table.error().to_string();
   ASSERT_EQ(table->size(), 3u);
   EXPECT_EQ((*table)[1].name, "x");
   EXPECT_TRUE(std::isnan((*table)[1].values[1]));
   EXPECT_THAT((*table)[2].values, ElementsAre(2000, -std::numeric_limits<double>::infinity()));
-  EXPECT_THAT(error("a.csv", TableFormat::csv, "x,y\n1,2,3\n"), HasSubstr("a.csv:2:5"));
-  EXPECT_THAT(error("a.csv", TableFormat::csv, "x,y\n1,yes\n"),
-              HasSubstr("`yes` is not a number for y"));
+  EXPECT_THAT(error("a.csv", "x,y\n1,2,3\n"), HasSubstr("a.csv:2:5"));
+  EXPECT_THAT(error("a.csv", "x,y\n1,yes\n"), HasSubstr("`yes` is not a number for y"));
 }
 
 }  // namespace

@@ -1,0 +1,129 @@
+#include "harness/host/trace_format.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "harness/core/suggestion.hpp"
+#include "harness/host/mat_file.hpp"
+#include "harness/trace/csv.hpp"
+#include "harness/trace/csv_rows.hpp"
+#include "harness/ulog/format.hpp"
+#include "harness/ulog/trace_log.hpp"
+
+namespace attest {
+namespace {
+
+Result<Table> read_csv_table(const std::filesystem::path& path, std::size_t most_rows) {
+  // A column may have no name.
+  auto rows = CsvRows::open(path, CsvRows::Unnamed::allowed);
+  if (!rows) return tl::unexpected(rows.error());
+  Table table;
+  std::vector<CsvColumn> columns;
+  for (const std::string& name : rows->header()) {
+    columns.push_back({CellType::f64, sizeof(double) * columns.size()});
+    table.push_back({name, {}});
+  }
+  std::vector<double> row(columns.size());
+  rows->set_columns(std::move(columns));
+  for (std::size_t count = 0; count < most_rows; ++count) {
+    const auto more = rows->next(row.data());
+    if (!more) return tl::unexpected(more.error());
+    if (!*more) return table;
+    for (std::size_t i = 0; i < row.size(); ++i) table[i].values.push_back(row[i]);
+  }
+  return table;
+}
+
+Result<void> write_csv_trace(AtomicFile file, const Trace& trace) {
+  CsvColumns columns = all_columns(trace);
+  columns.plant = !trace.plant.empty();
+  return write_csv(std::move(file), trace, columns);
+}
+
+// To add a format: its functions in a file, their declarations if it has no header, and its row.
+constexpr std::array formats{
+    TraceFormat{"csv", "", "CSV", nullptr, open_csv, nullptr, signals_of_csv, read_csv_table,
+                write_csv_trace},
+    TraceFormat{"ulg", "ulog", "ULog",
+                [](std::string_view bytes) { return bytes.starts_with(ulog::file_magic); }, nullptr,
+                read_flight_log, signals_of_log, nullptr, write_log},
+    TraceFormat{"mat", "", "MAT",
+                [](std::string_view bytes) { return bytes.starts_with("MATLAB "); }, nullptr,
+                nullptr, nullptr, read_mat, write_mat},
+};
+
+// Empty for a pipe.
+std::string first_bytes_of(const std::filesystem::path& path) {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(path, unknown)) return "";
+  std::array<char, 16> begin{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(begin.data(), begin.size());
+  return {begin.data(), static_cast<std::size_t>(file.gcount())};
+}
+
+std::vector<std::string> names_of_all(bool (*can)(const TraceFormat& format)) {
+  std::vector<std::string> names;
+  for (const TraceFormat& format : formats) {
+    if (can(format)) names.emplace_back(format.name);
+  }
+  return names;
+}
+
+bool has_tables(const TraceFormat& format) { return format.read_table != nullptr; }
+bool is_written(const TraceFormat& format) { return format.write != nullptr; }
+
+}  // namespace
+
+std::span<const TraceFormat> trace_formats() { return formats; }
+
+const TraceFormat& format_for(const std::filesystem::path& path) {
+  const std::string ending = path.extension().string();
+  const auto found = std::find_if(formats.begin(), formats.end(), [&](const TraceFormat& format) {
+    return ending.size() > 1 &&
+           (ending.substr(1) == format.name || ending.substr(1) == format.other_ending);
+  });
+  return found == formats.end() ? formats.front() : *found;
+}
+
+const TraceFormat& format_of(const std::filesystem::path& path) {
+  const std::string bytes = first_bytes_of(path);
+  const auto found = std::find_if(formats.begin(), formats.end(), [&](const TraceFormat& format) {
+    return format.begins != nullptr && format.begins(bytes);
+  });
+  return found == formats.end() ? format_for(path) : *found;
+}
+
+std::string written_endings() {
+  const auto names = names_of_all(is_written);
+  return fmt::format(".{}", fmt::join(names.begin() + 1, names.end(), ", ."));
+}
+
+Result<const TraceFormat*> parse_table_format(std::string_view name) {
+  for (const TraceFormat& format : formats) {
+    if (format.name == name && has_tables(format)) return &format;
+  }
+  const auto names = names_of_all(has_tables);
+  return fail(fmt::format("no format `{}`{}; there are {}", name, suggestion(name, names),
+                          fmt::join(names, ", ")));
+}
+
+tl::unexpected<Error> wrong_format(const std::filesystem::path& path, const TraceFormat& format,
+                                   bool (*can)(const TraceFormat& format)) {
+  return fail_at(path.string(), fmt::format("is a {} file; this needs one of the format {}",
+                                            format.title, fmt::join(names_of_all(can), " or ")));
+}
+
+Result<void> write_trace(AtomicFile file, const Trace& trace) {
+  const TraceFormat& format = format_for(file.path());
+  if (is_written(format)) return format.write(std::move(file), trace);
+  return wrong_format(file.path(), format, is_written);
+}
+
+}  // namespace attest
