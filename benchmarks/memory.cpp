@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "harness/casefile/select.hpp"
-#include "harness/compare/compare_parts.hpp"
+#include "harness/compare/compare.hpp"
 #include "harness/golden/recorded.hpp"
 #include "harness/trace/csv.hpp"
 #include "harness/verify/case_job.hpp"
@@ -83,7 +83,7 @@ void write_long_trace(const std::filesystem::path& path, std::size_t ticks) {
 
 void compare_with_itself(const std::filesystem::path& path) {
   const auto got = open_csv(path, TraceNeed::outputs), want = open_csv(path, TraceNeed::outputs);
-  (void)compare_parts(**got, **want, Tolerances(Level::numeric));
+  (void)compare(**got, **want, Tolerances(Level::numeric));
 }
 
 void replay(const std::filesystem::path& path) {

@@ -85,28 +85,44 @@ void parse_module_of_flight(const TomlTable& root, Case& parsed) {
   parsed.attitude_loop.emplace();
 }
 
-// `[mixer]`, `[battery]` or `module` names the module under test. Without them it is the
+void parse_key_of_module(const TomlTable& root, const char* key, Case& parsed) {
+  const auto module = module_named(root.text(key));
+  const bool is_valid = module && info_of(*module).case_table.empty();
+  if (!is_valid) {
+    std::vector<std::string_view> names;
+    for (const ModuleInfo& info : modules()) {
+      if (info.case_table.empty()) names.push_back(info.name);
+    }
+    const auto last = names.end() - 1;
+    root.error(key, fmt::format("must be {} or {}", fmt::join(names.begin(), last, ", "), *last));
+  }
+  if (parsed.module != Module::mc_att_control) {
+    root.error(key, "is not for cases of mixer and battery estimate");
+  } else if (is_valid) {
+    parsed.module = *module;
+  }
+}
+
+// A table such as `[mixer]`, or `module`, names the module under test. Without them it is the
 // controller, or in a flight of the cascade the rate unit.
 void parse_module(const TomlTable& root, Case& parsed) {
   constexpr const char* key = "module";
-  for (const char* other : {"mixer", "battery"}) {
-    if (!root.has(other)) continue;
-    if (root.has("flight")) root.error(other, "is a case of its own; leave [flight] out");
-    if (parsed.module != Module::mc_att_control)
-      root.error(other, "`mixer` is given too; keep one");
-    parsed.module = root.has("mixer") ? Module::mixer : Module::battery_status;
+  for (const ModuleInfo& info : modules()) {
+    if (info.case_table.empty() || !root.has(info.case_table)) continue;
+    if (root.has("flight")) {
+      root.error(info.case_table, "is a case of its own; leave [flight] out");
+    }
+    if (parsed.module == Module::mc_att_control) {
+      parsed.module = info.module;
+    } else {
+      root.error(info.case_table,
+                 fmt::format("`{}` is given too; keep one", info_of(parsed.module).case_table));
+    }
   }
   if (root.has("flight")) {
     parse_module_of_flight(root, parsed);
   } else if (root.has(key)) {
-    const auto module = module_named(root.text(key));
-    const bool is_unit = module && info_of(*module).is_unit();
-    if (!is_unit) root.error(key, "must be mc_att_control, attitude_unit or rate_unit");
-    if (parsed.module != Module::mc_att_control) {
-      root.error(key, "is not for cases of mixer and battery estimate");
-    } else if (is_unit) {
-      parsed.module = *module;
-    }
+    parse_key_of_module(root, key, parsed);
   }
   check_module(root, parsed);
   if (parsed.module != Module::mixer) return;

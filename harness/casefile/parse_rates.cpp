@@ -9,21 +9,12 @@
 namespace attest {
 namespace {
 
-// A mixer has no clock, so one rate is enough. The firmware measures the battery 100 times a
-// second. The estimator publishes 50 to 1000 attitudes a second.
 std::vector<LoopRate> default_rates(Module module) {
-  switch (module) {
-    case Module::mixer:
-      return {Rate::hz(250)};
-    case Module::battery_status:
-      return {Rate::hz(100)};
-    case Module::attitude_unit:
-      return {Rate::hz(50), Rate::hz(100), Rate::hz(250), Rate::hz(500), Rate::hz(1000)};
-    case Module::mc_att_control:
-    case Module::rate_unit:
-      return {standard_rates().begin(), standard_rates().end()};
-  }
-  return {};
+  const auto hertz = info_of(module).default_rates_hz;
+  if (hertz.empty()) return {standard_rates().begin(), standard_rates().end()};
+  std::vector<LoopRate> rates;
+  for (const int one : hertz) rates.emplace_back(Rate::hz(one));
+  return rates;
 }
 
 // Common pairs of rates [Hz]: attitude unit, rate unit.

@@ -1,3 +1,5 @@
+#include "harness/compare/compare.hpp"
+
 #include <charconv>
 #include <filesystem>
 #include <memory>
@@ -9,7 +11,6 @@
 
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/shared_arguments.hpp"
-#include "harness/compare/compare_parts.hpp"
 #include "harness/compare/compare_signals.hpp"
 #include "harness/core/file.hpp"
 #include "harness/host/trace_format.hpp"
@@ -70,7 +71,7 @@ Result<Comparison> compare_ticks(const CompareOptions& options, const Tolerances
   if (!got) return tl::unexpected(got.error());
   const auto want = trace_in(options.want);
   if (!want) return tl::unexpected(want.error());
-  return compare_parts(**got, **want, tolerances);
+  return compare(**got, **want, tolerances);
 }
 
 // The time of --shift. For "auto": the estimated one, or 0 if it cannot be estimated.

@@ -16,7 +16,8 @@
 
 #include "harness/compare/allowed_deviation.hpp"
 #include "harness/compare/tolerance.hpp"
-#include "harness/trace/trace.hpp"
+#include "harness/core/result.hpp"
+#include "harness/trace/trace_parts.hpp"
 
 namespace attest {
 
@@ -63,6 +64,9 @@ struct Comparison {
 };
 
 Comparison compare(const Trace& got, const Trace& want, const Tolerances& tolerances);
+// The traces are read part by part, in memory that does not grow with their length; whole at the
+// events level, which looks ahead. Errors: those of TraceParts.
+Result<Comparison> compare(TraceParts& got, TraceParts& want, const Tolerances& tolerances);
 
 // Combines the comparisons of two traces of one flight: takes the earlier first deviation, at equal
 // times that of the earlier stage, and the larger worst one. REQUIRES: both were compared at the

@@ -36,8 +36,7 @@ void UnitTask::prepare(std::size_t tick, Nanoseconds now, const Arrivals& arriva
       return take(arrivals, sample_.attitude_in);
     case Module::rate_unit:
       return take(arrivals, sample_.rate_in);
-    case Module::mixer:
-    case Module::battery_status:
+    default:  // does not fly
       return;
   }
 }

@@ -11,39 +11,29 @@
 
 namespace attest {
 
-// Only for decltype: UnitOf with the types of the parameters of a table's step().
-template <typename In, typename Out>
-UnitOf<In, Out> unit_with(int (*)(void*, const In*, Out*));
-
-// Table is attest_unit or the table of an extension.
-template <typename Table>
-class AbiUnit final : public decltype(unit_with(Table::step)) {
+class AbiUnit final : public Unit {
  public:
-  using Base = decltype(unit_with(Table::step));
-  using typename Base::Inputs;
-  using typename Base::Outputs;
-
-  // `timestamp_sample` is null if the unit does not need the time of the sample.
-  AbiUnit(const Table& table, void* self, const attest_timestamp_sample* timestamp_sample)
-      : table_(table), self_(self), timestamp_sample_(timestamp_sample) {}
-  ~AbiUnit() override { table_.destroy(self_); }
+  // `self`: the unit that the table made. `timestamp_sample` is null if the unit does not need the
+  // time of the sample.
+  AbiUnit(const ModuleAbi& abi, const void* table, void* self,
+          const attest_timestamp_sample* timestamp_sample)
+      : abi_(abi), table_(table), self_(self), timestamp_sample_(timestamp_sample) {}
+  ~AbiUnit() override { abi_.destroy(table_, self_); }
   AbiUnit(const AbiUnit&) = delete;
   AbiUnit& operator=(const AbiUnit&) = delete;
 
   int set_parameter(const std::string& name, float value) override {
-    if constexpr (requires { table_.set_parameter; }) {
-      return table_.set_parameter(self_, name.c_str(), value);
-    }
-    return ATTEST_INVALID;
+    return abi_.set_parameter(table_, self_, name.c_str(), value);
   }
   int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
     if (timestamp_sample_ == nullptr) return ATTEST_OK;
     return timestamp_sample_->set_timestamp_sample(self_, timestamp_sample_us);
   }
-  int step(const Inputs& in, Outputs& out) override { return table_.step(self_, &in, &out); }
+  int step_structs(const void* in, void* out) override { return abi_.step(table_, self_, in, out); }
 
  private:
-  const Table& table_;
+  const ModuleAbi& abi_;
+  const void* table_;
   void* self_;
   const attest_timestamp_sample* timestamp_sample_;
 };
@@ -89,41 +79,21 @@ class AbiPort final : public Port {
   }
   std::unique_ptr<Unit> create_unit(Module module, const std::string& profile,
                                     const std::string& definition) override {
-    const char* const id = info_of(module).extension;
-    switch (module) {
-      case Module::mc_att_control:
-        return wrapped(table_, table_.create(profile.c_str()),
-                       extension<attest_timestamp_sample>(ATTEST_EXTENSION_TIMESTAMP_SAMPLE));
-      case Module::mixer: {
-        const auto& table = *extension<attest_mixer>(id);
-        return wrapped(table, table.create(profile.c_str(), definition.c_str()));
-      }
-      case Module::battery_status: {
-        const auto& table = *extension<attest_battery_status>(id);
-        return wrapped(table, table.create(profile.c_str()));
-      }
-      case Module::attitude_unit: {
-        const auto& table = *extension<attest_attitude_unit>(id);
-        return wrapped(table, table.create(profile.c_str()));
-      }
-      case Module::rate_unit: {
-        const auto& table = *extension<attest_rate_unit>(id);
-        return wrapped(table, table.create(profile.c_str()));
-      }
-    }
-    return nullptr;
+    const ModuleInfo& info = info_of(module);
+    const bool is_controller = info.extension == nullptr;
+    const void* const table = is_controller ? &table_ : extension<void>(info.extension);
+    void* const self = info.abi.create(table, profile.c_str(), definition.c_str());
+    if (self == nullptr) return nullptr;
+    const auto* times = is_controller
+                            ? extension<attest_timestamp_sample>(ATTEST_EXTENSION_TIMESTAMP_SAMPLE)
+                            : nullptr;
+    return std::make_unique<AbiUnit>(info.abi, table, self, times);
   }
 
  private:
   template <typename Interface>
   const Interface* extension(const char* id) const {
     return table_.extension ? static_cast<const Interface*>(table_.extension(id)) : nullptr;
-  }
-
-  template <typename Table>
-  static std::unique_ptr<Unit> wrapped(const Table& table, void* self,
-                                       const attest_timestamp_sample* timestamp_sample = nullptr) {
-    return self ? std::make_unique<AbiUnit<Table>>(table, self, timestamp_sample) : nullptr;
   }
 
   std::shared_ptr<void> owner_;

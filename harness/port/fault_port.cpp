@@ -11,6 +11,7 @@
 #include "controller/faults/faulty_controller.hpp"
 #include "controller/mc_att_control/profile.hpp"
 #include "harness/core/suggestion.hpp"
+#include "harness/port/builtin.hpp"
 
 namespace attest {
 namespace {
@@ -94,17 +95,14 @@ class FaultPort final : public Port {
         return make<FaultyAttitudeUnit>(cascade::profile_from_name(profile));
       case Module::rate_unit:
         return make<FaultyRateUnit>(cascade::profile_from_name(profile));
-      case Module::mixer:
       case Module::battery_status:
-        break;
+        if (!actuation::is_profile(profile.c_str())) return nullptr;
+        return std::make_unique<FaultyBattery>(faults::law_with(faults_).battery);
+      case Module::mixer:
+        return make_mixer(profile, definition);
+      default:  // no fault of the catalogue is in the module
+        return reference_->create_unit(module, profile, definition);
     }
-    if (!actuation::is_profile(profile.c_str())) return nullptr;
-    if (module == Module::battery_status) {
-      return std::make_unique<FaultyBattery>(faults::law_with(faults_).battery);
-    }
-    const auto parsed = actuation::parse_mixer(definition);
-    if (!parsed) return nullptr;
-    return std::make_unique<FaultyMixer>(*parsed, faults::law_with(faults_).mixer);
   }
 
  private:
@@ -114,9 +112,17 @@ class FaultPort final : public Port {
     return profile ? std::make_unique<Made>(*profile, faults_) : nullptr;
   }
 
+  std::unique_ptr<Unit> make_mixer(const std::string& profile,
+                                   const std::string& definition) const {
+    const auto parsed = actuation::parse_mixer(definition);
+    if (!parsed || !actuation::is_profile(profile.c_str())) return nullptr;
+    return std::make_unique<FaultyMixer>(*parsed, faults::law_with(faults_).mixer);
+  }
+
   std::string ids_;
   std::vector<const Fault*> faults_;
   std::optional<int> fraction_bits_;
+  std::unique_ptr<Port> reference_ = open_builtin();
 };
 
 }  // namespace

@@ -12,19 +12,24 @@
 namespace attest {
 namespace {
 
+// The modules of the law. Without `has_extensions`, only the controller.
+ProfileInfo profile_of(std::string_view name, bool is_of_cascade, bool has_extensions) {
+  ProfileInfo profile{name, {}};
+  for (const ModuleInfo& info : modules()) {
+    if (info.is_of_cascade != is_of_cascade || (info.extension && !has_extensions)) continue;
+    profile.modules |= only(info.module);
+  }
+  return profile;
+}
+
 std::vector<ProfileInfo> make_profiles() {
   std::vector<ProfileInfo> all;
   for (const mc_att_control::Profile profile : mc_att_control::every_profile) {
     const std::string_view name = mc_att_control::name_of(profile);
-    ModuleSet modules = only(Module::mc_att_control);
-    if (actuation::is_profile(name.data())) {
-      modules |= only(Module::mixer) | only(Module::battery_status);
-    }
-    all.push_back({name, modules});
+    all.push_back(profile_of(name, false, actuation::is_profile(name.data())));
   }
   for (const cascade::Profile profile : cascade::every_profile) {
-    all.push_back(
-        {cascade::name_of(profile), only(Module::attitude_unit) | only(Module::rate_unit)});
+    all.push_back(profile_of(cascade::name_of(profile), true, true));
   }
   return all;
 }
@@ -96,16 +101,15 @@ std::vector<Parameter> parameters_of(Module module, const ProfileInfo& profile) 
     case Module::mc_att_control:
       return rows_of(mc_att_control::parameter_table(),
                      *mc_att_control::profile_from_name(profile.name));
-    case Module::mixer:
-      return {};
     case Module::battery_status:
       return battery_parameters();
     case Module::attitude_unit:
       return rows_of(cascade::attitude_parameters(), *cascade::profile_from_name(profile.name));
     case Module::rate_unit:
       return rows_of(cascade::rate_parameters(), *cascade::profile_from_name(profile.name));
+    default:
+      return {};
   }
-  return {};
 }
 
 std::vector<std::string> parameter_names(Module module, std::string_view profile) {

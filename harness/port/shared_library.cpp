@@ -29,36 +29,6 @@ std::string missing_member(const attest_unit& unit) {
   return "";
 }
 
-template <typename Table>
-bool is_complete(const Table& table) {
-  bool has_parameters = true;
-  if constexpr (requires { table.set_parameter; }) has_parameters = table.set_parameter;
-  return table.create && table.destroy && table.step && has_parameters;
-}
-
-// True if the extension's table is complete, or if the port does not have the extension.
-template <typename Table>
-bool is_complete(const attest_unit& unit, const char* id) {
-  const auto* table = static_cast<const Table*>(unit.extension(id));
-  return table == nullptr || is_complete(*table);
-}
-
-bool is_complete(const attest_unit& unit, const ModuleInfo& info) {
-  switch (info.module) {
-    case Module::mc_att_control:
-      return true;
-    case Module::mixer:
-      return is_complete<attest_mixer>(unit, info.extension);
-    case Module::battery_status:
-      return is_complete<attest_battery_status>(unit, info.extension);
-    case Module::attitude_unit:
-      return is_complete<attest_attitude_unit>(unit, info.extension);
-    case Module::rate_unit:
-      return is_complete<attest_rate_unit>(unit, info.extension);
-  }
-  return false;
-}
-
 // Checks the extensions that the port has: tables must be complete, texts must be valid.
 Result<void> check_extensions(const attest_unit& unit, const std::string& path) {
   const auto incomplete = [&](const char* id) {
@@ -67,7 +37,8 @@ Result<void> check_extensions(const attest_unit& unit, const std::string& path) 
   };
   if (!unit.extension) return {};
   for (const ModuleInfo& info : modules()) {
-    if (!is_complete(unit, info)) return incomplete(info.extension);
+    const void* const table = info.extension ? unit.extension(info.extension) : nullptr;
+    if (table && !info.abi.is_complete(table)) return incomplete(info.extension);
   }
   const auto* times = static_cast<const attest_timestamp_sample*>(
       unit.extension(ATTEST_EXTENSION_TIMESTAMP_SAMPLE));

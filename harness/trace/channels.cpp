@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "harness/core/agreement.hpp"
-#include "harness/trace/channel_table.hpp"
+#include "harness/trace/module_table.hpp"
 
 namespace attest {
 namespace {
@@ -164,27 +164,7 @@ std::string_view unit_of(Quantity quantity) {
   }
 }
 
-std::string_view name_of(Stage stage) {
-  switch (stage) {
-    case Stage::input:
-      return "input";
-    case Stage::sticks:
-      return "sticks";
-    case Stage::attitude_law:
-      return "attitude law";
-    case Stage::rate_law:
-      return "rate law";
-    case Stage::integrator:
-      return "integrator";
-    case Stage::actuators:
-      return "actuators";
-    case Stage::mixer:
-      return "mixer";
-    case Stage::battery_status:
-      return "battery status";
-  }
-  return "";
-}
+std::string_view name_of(Stage stage) { return stage_names[static_cast<std::size_t>(stage)]; }
 
 std::optional<Stage> stage_named(std::string_view name) {
   for (std::size_t i = 0; i < stage_count; ++i) {

@@ -45,26 +45,6 @@ enum class Quantity : std::uint8_t {
   current,               // A
 };
 
-// The stage of the law that writes an output; `input` for an input. The order is that of the data
-// flow within a step, of all modules: the only place for it. If the outputs of several stages
-// deviate in one step, the mistake is in the first of them, or before it.
-enum class Stage : std::uint8_t {
-  input,
-  sticks,
-  attitude_law,
-  rate_law,    // uses the integrals of the step before
-  integrator,  // moves them
-  actuators,   // thrust, scaling by the battery, landing gear
-  mixer,
-  battery_status
-};
-inline constexpr auto stage_count = static_cast<std::size_t>(Stage::battery_status) + 1;
-using StageSet = std::bitset<stage_count>;  // by enumerator
-inline StageSet only(Stage stage) { return StageSet().set(static_cast<std::size_t>(stage)); }
-inline bool contains(const StageSet& set, Stage stage) {
-  return set[static_cast<std::size_t>(stage)];
-}
-
 struct Channel {
   std::string_view name;  // with its prefix
   ChannelType type;
@@ -86,8 +66,8 @@ struct Channel {
 // its outputs.
 std::span<const Channel> channels();
 inline constexpr std::size_t timestamp_channel = 0;  // index into channels()
-inline constexpr std::size_t max_channels = 212;
-using ChannelSet = std::bitset<max_channels>;  // by index into channels()
+inline constexpr std::size_t max_channels = 256;     // there are at most so many
+using ChannelSet = std::bitset<max_channels>;        // by index into channels()
 
 // Index into channels(); empty when the module has no such name.
 std::optional<std::size_t> find_channel(Module module, std::string_view name);

@@ -1,4 +1,5 @@
-// The modules of a flight controller as data: where the inputs and outputs of each are in a Sample.
+// The modules of a flight controller as data: where the inputs and outputs of each are in a Sample,
+// and how the modules differ. module_table.cpp has the rows.
 #pragma once
 
 #include <bitset>
@@ -29,6 +30,26 @@ using ModuleSet = std::bitset<module_count>;
 inline ModuleSet only(Module module) { return ModuleSet().set(static_cast<std::size_t>(module)); }
 inline bool contains(const ModuleSet& set, Module module) {
   return set[static_cast<std::size_t>(module)];
+}
+
+// The stage of the law that writes an output; `input` for an input. The order is that of the data
+// flow within a step, of all modules: the only place for it. If the outputs of several stages
+// deviate in one step, the mistake is in the first of them, or before it.
+enum class Stage : std::uint8_t {
+  input,
+  sticks,
+  attitude_law,
+  rate_law,    // uses the integrals of the step before
+  integrator,  // moves them
+  actuators,   // thrust, scaling by the battery, landing gear
+  mixer,
+  battery_status
+};
+inline constexpr auto stage_count = static_cast<std::size_t>(Stage::battery_status) + 1;
+using StageSet = std::bitset<stage_count>;  // by enumerator
+inline StageSet only(Stage stage) { return StageSet().set(static_cast<std::size_t>(stage)); }
+inline bool contains(const StageSet& set, Stage stage) {
+  return set[static_cast<std::size_t>(stage)];
 }
 
 // The inputs and outputs of one step of one module. Those of the other modules are zero, except the
@@ -80,18 +101,31 @@ struct Block {
   void paste(std::span<const std::byte> copied, std::span<Sample> samples) const;
 };
 
+// The functions of a module's table in the ABI, with one signature for all modules. `table` is the
+// table that a port has: attest_unit, or that of the module's extension.
+struct ModuleAbi {
+  bool (*is_complete)(const void* table);  // no function is null
+  void* (*create)(const void* table, const char* profile, const char* definition);
+  void (*destroy)(const void* table, void* self);
+  int (*set_parameter)(const void* table, void* self, const char* name, float value);
+  int (*step)(const void* table, void* self, const void* in, void* out);
+};
+
 struct ModuleInfo {
   Module module;
   std::string_view name;   // "battery_status"
   std::string_view title;  // for messages: "battery estimate"
   const char* extension;   // the id that has it: ATTEST_EXTENSION_MIXER; null: controller
   Block in, out;
+  ModuleAbi abi;
+  std::string_view case_table = {};  // that makes a case one of the module; empty: `module = NAME`
+  std::span<const int> default_rates_hz = {};  // of open-loop cases; empty: standard_rates()
+  bool is_of_cascade = false;                  // of v1.14 and later
   // Only of a unit. Its inputs have `updated`: a bit for each topic that is new.
   std::string_view step_topic = {};      // the input that is new at every step, without a bit
   std::string_view setpoint_topic = {};  // the input that the law follows
   Block sampled = {};                    // the time from which the law computes its dt [us]
   Block armed = {};                      // the flag that arms the motors, in the inputs
-  bool is_of_cascade = false;            // of v1.14 and later
 
   Block all_inputs() const { return {0, in.offset + in.size}; }  // with the timestamp
   bool is_unit() const { return !step_topic.empty(); }

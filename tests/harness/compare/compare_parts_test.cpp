@@ -1,9 +1,8 @@
 // Comparing traces part by part gives the same result as comparing whole traces.
-#include "harness/compare/compare_parts.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "harness/compare/compare.hpp"
 #include "harness/core/file.hpp"
 #include "harness/trace/csv.hpp"
 #include "tests/harness/compare/sample_trace.hpp"
@@ -24,8 +23,8 @@ class ComparePartsTest : public testing::Test {
 
   Result<Comparison> compared_parts(const std::filesystem::path& got,
                                     const std::filesystem::path& want) const {
-    return compare_parts(**open_csv(got, TraceNeed::outputs), **open_csv(want, TraceNeed::outputs),
-                         tolerances_);
+    return compare(**open_csv(got, TraceNeed::outputs), **open_csv(want, TraceNeed::outputs),
+                   tolerances_);
   }
 
   Result<Comparison> compared(const Trace& got, const Trace& want) const {

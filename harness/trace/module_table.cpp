@@ -1,7 +1,51 @@
-#include "harness/trace/channel_table.hpp"
+#include "harness/trace/module_table.hpp"
+
+#include <iterator>
 
 namespace attest {
 namespace {
+
+// The battery is measured at 100 Hz in the firmware. A mixer has no clock, so one rate is enough.
+// The estimator publishes 50 to 1000 attitudes a second.
+constexpr int rates_of_mixer[] = {250}, rates_of_battery[] = {100};
+constexpr int rates_of_attitude_unit[] = {50, 100, 250, 500, 1000};
+constexpr std::span<const int> standard;
+
+#define BLOCK(member) \
+  Block { offsetof(Sample, member), sizeof(Sample::member) }
+
+}  // namespace
+
+constinit const std::array<ModuleInfo, module_count> module_table{{
+    {Module::mc_att_control, "mc_att_control", "controller", nullptr, BLOCK(in), BLOCK(out),
+     abi_of(&attest_unit::step), "", standard, false, "control_state", "vehicle_attitude_setpoint",
+     BLOCK(in.timestamp), BLOCK(in.actuator_armed.armed)},
+    {Module::mixer, "mixer", "mixer", ATTEST_EXTENSION_MIXER, BLOCK(mixer_in), BLOCK(mixer_out),
+     abi_of(&attest_mixer::step), "mixer", rates_of_mixer},
+    {Module::battery_status, "battery_status", "battery estimate", ATTEST_EXTENSION_BATTERY_STATUS,
+     BLOCK(battery_in), BLOCK(battery_out), abi_of(&attest_battery_status::step), "battery",
+     rates_of_battery},
+    {Module::attitude_unit, "attitude_unit", "attitude unit", ATTEST_EXTENSION_ATTITUDE_UNIT,
+     BLOCK(attitude_in), BLOCK(attitude_out), abi_of(&attest_attitude_unit::step), "",
+     rates_of_attitude_unit, true, "vehicle_attitude", "vehicle_attitude_setpoint",
+     BLOCK(attitude_in.vehicle_attitude.timestamp_sample), BLOCK(attitude_in.vehicle_status.armed)},
+    {Module::rate_unit, "rate_unit", "rate unit", ATTEST_EXTENSION_RATE_UNIT, BLOCK(rate_in),
+     BLOCK(rate_out), abi_of(&attest_rate_unit::step), "", standard, true,
+     "vehicle_angular_velocity", "vehicle_rates_setpoint",
+     BLOCK(rate_in.vehicle_angular_velocity.timestamp_sample),
+     BLOCK(rate_in.vehicle_control_mode.flag_armed)},
+}};
+
+#undef BLOCK
+
+constinit const std::array<std::string_view, stage_count> stage_names{
+    "input",      "sticks",    "attitude law", "rate law",
+    "integrator", "actuators", "mixer",        "battery status"};
+
+namespace {
+
+static_assert(offsetof(attest_attitude_inputs, updated) == offsetof(attest_inputs, updated) &&
+              offsetof(attest_rate_inputs, updated) == offsetof(attest_inputs, updated));
 
 constexpr Channel number(std::string_view name, Quantity quantity, Module module, Stage stage,
                          std::size_t offset) {
@@ -36,6 +80,9 @@ constexpr Channel time(std::string_view name, Module module, std::size_t offset)
 #define IN(member, quantity)                                              \
   number("in/" #member, Quantity::quantity, Module::MODULE, Stage::input, \
          offsetof(Sample, INPUTS.member))
+#define IN_3(member, quantity) \
+  IN(member[0], quantity), IN(member[1], quantity), IN(member[2], quantity)
+#define IN_4(member, quantity) IN_3(member, quantity), IN(member[3], quantity)
 #define FLAG(member) \
   flag("in/" #member, Module::MODULE, Stage::input, offsetof(Sample, INPUTS.member))
 #define BYTE(member) byte("in/" #member, Module::MODULE, offsetof(Sample, INPUTS.member))
@@ -44,28 +91,24 @@ constexpr Channel time(std::string_view name, Module module, std::size_t offset)
 #define OUT(member, quantity, stage)                                       \
   number("out/" #member, Quantity::quantity, Module::MODULE, Stage::stage, \
          offsetof(Sample, OUTPUTS.member))
+#define OUT_3(member, quantity, stage) \
+  OUT(member[0], quantity, stage), OUT(member[1], quantity, stage), OUT(member[2], quantity, stage)
+#define OUT_4(member, quantity, stage) \
+  OUT_3(member, quantity, stage), OUT(member[3], quantity, stage)
 #define OUT_FLAG(member, stage) \
   flag("out/" #member, Module::MODULE, Stage::stage, offsetof(Sample, OUTPUTS.member))
 #define PUBLISHED(topic, stage) OUT_FLAG(topic.published, stage)
 
-}  // namespace
-
-constinit const std::array<Channel, max_channels> channel_table{{
+constexpr Channel rows[] = {
 #define MODULE mc_att_control
 #define INPUTS in
 #define OUTPUTS out
     time("timestamp", Module::mc_att_control, offsetof(Sample, in.timestamp)),  // of every module
-    IN(control_state.q[0], quaternion),
-    IN(control_state.q[1], quaternion),
-    IN(control_state.q[2], quaternion),
-    IN(control_state.q[3], quaternion),
+    IN_4(control_state.q, quaternion),
     IN(control_state.roll_rate, rate),
     IN(control_state.pitch_rate, rate),
     IN(control_state.yaw_rate, rate),
-    IN(vehicle_attitude_setpoint.q_d[0], quaternion),
-    IN(vehicle_attitude_setpoint.q_d[1], quaternion),
-    IN(vehicle_attitude_setpoint.q_d[2], quaternion),
-    IN(vehicle_attitude_setpoint.q_d[3], quaternion),
+    IN_4(vehicle_attitude_setpoint.q_d, quaternion),
     IN(vehicle_attitude_setpoint.thrust, thrust),
     IN(vehicle_attitude_setpoint.yaw_sp_move_rate, rate),
     FLAG(vehicle_attitude_setpoint.disable_mc_yaw_control),
@@ -106,9 +149,7 @@ constinit const std::array<Channel, max_channels> channel_table{{
     OUT(vehicle_rates_setpoint.yaw, rate, attitude_law),
     OUT(vehicle_rates_setpoint.thrust, thrust, attitude_law),
     PUBLISHED(actuator_controls_0, actuators),
-    OUT(actuator_controls_0.control[0], control, rate_law),
-    OUT(actuator_controls_0.control[1], control, rate_law),
-    OUT(actuator_controls_0.control[2], control, rate_law),
+    OUT_3(actuator_controls_0.control, control, rate_law),
     OUT(actuator_controls_0.control[3], control, actuators),
     OUT(actuator_controls_0.control[4], control, actuators),
     OUT(actuator_controls_0.control[5], control, actuators),
@@ -125,15 +166,10 @@ constinit const std::array<Channel, max_channels> channel_table{{
 #define MODULE mixer
 #define INPUTS mixer_in
 #define OUTPUTS mixer_out
-    IN(actuator_controls_0.control[0], control),
-    IN(actuator_controls_0.control[1], control),
-    IN(actuator_controls_0.control[2], control),
+    IN_3(actuator_controls_0.control, control),
     IN(actuator_controls_0.control[3], thrust),
     IN(mixer.delta_out_max, motor),
-    OUT(actuator_outputs.output[0], motor, mixer),
-    OUT(actuator_outputs.output[1], motor, mixer),
-    OUT(actuator_outputs.output[2], motor, mixer),
-    OUT(actuator_outputs.output[3], motor, mixer),
+    OUT_4(actuator_outputs.output, motor, mixer),
     OUT(actuator_outputs.output[4], motor, mixer),
     OUT(actuator_outputs.output[5], motor, mixer),
     OUT(actuator_outputs.output[6], motor, mixer),
@@ -162,23 +198,12 @@ constinit const std::array<Channel, max_channels> channel_table{{
 #define OUTPUTS attitude_out
     TIME(vehicle_attitude.timestamp),
     TIME(vehicle_attitude.timestamp_sample),
-    IN(vehicle_attitude.q[0], quaternion),
-    IN(vehicle_attitude.q[1], quaternion),
-    IN(vehicle_attitude.q[2], quaternion),
-    IN(vehicle_attitude.q[3], quaternion),
-    IN(vehicle_attitude.delta_q_reset[0], quaternion),
-    IN(vehicle_attitude.delta_q_reset[1], quaternion),
-    IN(vehicle_attitude.delta_q_reset[2], quaternion),
-    IN(vehicle_attitude.delta_q_reset[3], quaternion),
+    IN_4(vehicle_attitude.q, quaternion),
+    IN_4(vehicle_attitude.delta_q_reset, quaternion),
     BYTE(vehicle_attitude.quat_reset_counter),
     TIME(vehicle_attitude_setpoint.timestamp),
-    IN(vehicle_attitude_setpoint.q_d[0], quaternion),
-    IN(vehicle_attitude_setpoint.q_d[1], quaternion),
-    IN(vehicle_attitude_setpoint.q_d[2], quaternion),
-    IN(vehicle_attitude_setpoint.q_d[3], quaternion),
-    IN(vehicle_attitude_setpoint.thrust_body[0], thrust),
-    IN(vehicle_attitude_setpoint.thrust_body[1], thrust),
-    IN(vehicle_attitude_setpoint.thrust_body[2], thrust),
+    IN_4(vehicle_attitude_setpoint.q_d, quaternion),
+    IN_3(vehicle_attitude_setpoint.thrust_body, thrust),
     IN(vehicle_attitude_setpoint.yaw_sp_move_rate, rate),
     IN(manual_control_setpoint.roll, stick),
     IN(manual_control_setpoint.pitch, stick),
@@ -201,9 +226,7 @@ constinit const std::array<Channel, max_channels> channel_table{{
     IN(hover_thrust_estimate.hover_thrust, thrust),
     FLAG(hover_thrust_estimate.valid),
     TIME(autotune_attitude_control_status.timestamp),
-    IN(autotune_attitude_control_status.rate_sp[0], rate),
-    IN(autotune_attitude_control_status.rate_sp[1], rate),
-    IN(autotune_attitude_control_status.rate_sp[2], rate),
+    IN_3(autotune_attitude_control_status.rate_sp, rate),
     BYTE(autotune_attitude_control_status.state),
     UPDATED(vehicle_attitude_setpoint, ATTEST_ATTITUDE_UPDATED_VEHICLE_ATTITUDE_SETPOINT),
     UPDATED(manual_control_setpoint, ATTEST_ATTITUDE_UPDATED_MANUAL_CONTROL_SETPOINT),
@@ -218,17 +241,10 @@ constinit const std::array<Channel, max_channels> channel_table{{
     OUT(vehicle_rates_setpoint.roll, rate, attitude_law),
     OUT(vehicle_rates_setpoint.pitch, rate, attitude_law),
     OUT(vehicle_rates_setpoint.yaw, rate, attitude_law),
-    OUT(vehicle_rates_setpoint.thrust_body[0], control, attitude_law),
-    OUT(vehicle_rates_setpoint.thrust_body[1], control, attitude_law),
-    OUT(vehicle_rates_setpoint.thrust_body[2], control, attitude_law),
+    OUT_3(vehicle_rates_setpoint.thrust_body, control, attitude_law),
     PUBLISHED(vehicle_rates_setpoint, attitude_law),
-    OUT(vehicle_attitude_setpoint.q_d[0], quaternion, sticks),
-    OUT(vehicle_attitude_setpoint.q_d[1], quaternion, sticks),
-    OUT(vehicle_attitude_setpoint.q_d[2], quaternion, sticks),
-    OUT(vehicle_attitude_setpoint.q_d[3], quaternion, sticks),
-    OUT(vehicle_attitude_setpoint.thrust_body[0], control, sticks),
-    OUT(vehicle_attitude_setpoint.thrust_body[1], control, sticks),
-    OUT(vehicle_attitude_setpoint.thrust_body[2], control, sticks),
+    OUT_4(vehicle_attitude_setpoint.q_d, quaternion, sticks),
+    OUT_3(vehicle_attitude_setpoint.thrust_body, control, sticks),
     OUT(vehicle_attitude_setpoint.yaw_sp_move_rate, rate, sticks),
     PUBLISHED(vehicle_attitude_setpoint, sticks),
 #undef MODULE
@@ -239,25 +255,17 @@ constinit const std::array<Channel, max_channels> channel_table{{
 #define INPUTS rate_in
 #define OUTPUTS rate_out
     TIME(vehicle_angular_velocity.timestamp_sample),
-    IN(vehicle_angular_velocity.xyz[0], rate),
-    IN(vehicle_angular_velocity.xyz[1], rate),
-    IN(vehicle_angular_velocity.xyz[2], rate),
-    IN(vehicle_angular_velocity.xyz_derivative[0], angular_acceleration),
-    IN(vehicle_angular_velocity.xyz_derivative[1], angular_acceleration),
-    IN(vehicle_angular_velocity.xyz_derivative[2], angular_acceleration),
+    IN_3(vehicle_angular_velocity.xyz, rate),
+    IN_3(vehicle_angular_velocity.xyz_derivative, angular_acceleration),
     IN(vehicle_rates_setpoint.roll, rate),
     IN(vehicle_rates_setpoint.pitch, rate),
     IN(vehicle_rates_setpoint.yaw, rate),
-    IN(vehicle_rates_setpoint.thrust_body[0], thrust),
-    IN(vehicle_rates_setpoint.thrust_body[1], thrust),
-    IN(vehicle_rates_setpoint.thrust_body[2], thrust),
+    IN_3(vehicle_rates_setpoint.thrust_body, thrust),
     IN(manual_control_setpoint.roll, stick),
     IN(manual_control_setpoint.pitch, stick),
     IN(manual_control_setpoint.yaw, stick),
     IN(manual_control_setpoint.throttle, stick),
-    IN(control_allocator_status.unallocated_torque[0], control),
-    IN(control_allocator_status.unallocated_torque[1], control),
-    IN(control_allocator_status.unallocated_torque[2], control),
+    IN_3(control_allocator_status.unallocated_torque, control),
     FLAG(control_allocator_status.torque_setpoint_achieved),
     IN(battery_status.scale, scale),
     FLAG(battery_status.connected),
@@ -276,13 +284,9 @@ constinit const std::array<Channel, max_channels> channel_table{{
     UPDATED(control_allocator_status, ATTEST_RATE_UPDATED_CONTROL_ALLOCATOR_STATUS),
     UPDATED(battery_status, ATTEST_RATE_UPDATED_BATTERY_STATUS),
     UPDATED(parameter_update, ATTEST_RATE_UPDATED_PARAMETER_UPDATE),
-    OUT(vehicle_torque_setpoint.xyz[0], control, rate_law),
-    OUT(vehicle_torque_setpoint.xyz[1], control, rate_law),
-    OUT(vehicle_torque_setpoint.xyz[2], control, rate_law),
+    OUT_3(vehicle_torque_setpoint.xyz, control, rate_law),
     PUBLISHED(vehicle_torque_setpoint, rate_law),
-    OUT(vehicle_thrust_setpoint.xyz[0], thrust, actuators),
-    OUT(vehicle_thrust_setpoint.xyz[1], thrust, actuators),
-    OUT(vehicle_thrust_setpoint.xyz[2], thrust, actuators),
+    OUT_3(vehicle_thrust_setpoint.xyz, thrust, actuators),
     PUBLISHED(vehicle_thrust_setpoint, actuators),
     OUT(rate_ctrl_status.rollspeed_integ, integral, integrator),
     OUT(rate_ctrl_status.pitchspeed_integ, integral, integrator),
@@ -291,22 +295,29 @@ constinit const std::array<Channel, max_channels> channel_table{{
     OUT(vehicle_rates_setpoint.roll, rate, sticks),
     OUT(vehicle_rates_setpoint.pitch, rate, sticks),
     OUT(vehicle_rates_setpoint.yaw, rate, sticks),
-    OUT(vehicle_rates_setpoint.thrust_body[0], thrust, sticks),
-    OUT(vehicle_rates_setpoint.thrust_body[1], thrust, sticks),
-    OUT(vehicle_rates_setpoint.thrust_body[2], thrust, sticks),
+    OUT_3(vehicle_rates_setpoint.thrust_body, thrust, sticks),
     PUBLISHED(vehicle_rates_setpoint, sticks),
 #undef MODULE
 #undef INPUTS
 #undef OUTPUTS
-}};
+};
+static_assert(std::size(rows) <= max_channels);
 
 #undef IN
+#undef IN_3
+#undef IN_4
 #undef FLAG
 #undef BYTE
 #undef TIME
 #undef UPDATED
 #undef OUT
+#undef OUT_3
+#undef OUT_4
 #undef OUT_FLAG
 #undef PUBLISHED
+
+}  // namespace
+
+constinit const std::span<const Channel> channel_table = rows;
 
 }  // namespace attest
