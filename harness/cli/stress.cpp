@@ -116,8 +116,7 @@ Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& su
   for (const LoopRate& rate : *rates) {
     plan.tasks.push_back({the_case, RunConfiguration{rate, chosen->plant_configuration},
                           chosen->vehicle_model, plan.port, *live,
-                          nanoseconds(std::min(options.duration_s, idle_s_max)), timing,
-                          nanoseconds(options.host.timeout_s)});
+                          nanoseconds(std::min(options.duration_s, idle_s_max)), timing});
   }
   return plan;
 }

@@ -38,13 +38,13 @@ Histogram::Histogram(Histogram&&) noexcept = default;
 Histogram& Histogram::operator=(Histogram&&) noexcept = default;
 Histogram::~Histogram() = default;
 
-void Histogram::add(Nanoseconds time) {
-  bins_->counts(std::max(static_cast<double>(time.count()), lowest_ns));
-  ++count_;
-  over_limit_ += time > limit_ ? 1 : 0;
+void Histogram::add(Nanoseconds time, std::uint64_t count) {
+  bins_->counts(bh::weight(count), std::max(static_cast<double>(time.count()), lowest_ns));
+  count_ += count;
+  over_limit_ += time > limit_ ? count : 0;
   min_ = std::min(min_, time);
   max_ = std::max(max_, time);
-  sum_ += time;
+  sum_ += time * static_cast<std::int64_t>(count);
 }
 
 Nanoseconds Histogram::mean() const {

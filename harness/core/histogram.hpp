@@ -35,7 +35,8 @@ class Histogram {
   Histogram& operator=(Histogram&&) noexcept;
   ~Histogram();
 
-  void add(Nanoseconds time);
+  // Adds `count` equal times. Zero times set min() and max() only.
+  void add(Nanoseconds time, std::uint64_t count = 1);
 
   std::uint64_t count() const { return count_; }
   std::uint64_t over_limit() const { return over_limit_; }

@@ -9,14 +9,22 @@
 
 namespace attest {
 
+AnswerMeter::AnswerMeter(const PortChild& port, double timeout_s, bool is_program,
+                         Nanoseconds flight)
+    : port_(port), most_(timeout_s) {
+  constexpr auto to_make_units = std::chrono::seconds(10);
+  if (flight > Nanoseconds(0)) calls_count_until_ = Clock::now() + to_make_units + flight;
+  if (is_program) calls_count_until_ = Clock::time_point::max();
+}
+
 AnswerMeter::Limit AnswerMeter::exceeded() {
-  const auto now = std::chrono::steady_clock::now();
+  const auto now = Clock::now();
   if (now - looked_ < std::chrono::milliseconds(100)) return Limit::none;
   looked_ = now;
   const TreeUsage usage = port_.child.usage();
   if (memory_is_limited() && usage.resident_bytes >> 30 >= max_memory_gib) return Limit::memory;
-  const bool is_new_call =
-      is_program_ && std::exchange(calls_, port_.calls->count()) != port_.calls->count();
+  const std::uint64_t calls = port_.calls->count();
+  const bool is_new_call = std::exchange(calls_, calls) != calls && now < calls_count_until_;
   if (!at_begin_ || is_new_call) {
     at_begin_ = usage;
     began_ = now;

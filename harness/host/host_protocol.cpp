@@ -98,6 +98,7 @@ class Answerer {
     const std::string what = head.at("do").get<std::string>();
     if (what == "drive") return drive(head);
     if (what == "fly") return fly(head);
+    if (what == "fly_live") return fly_live(head);
     if (what == "time") return time(head);
     return send({{"supports", host_.supports(head.at("profile").get<std::string>())}});
   }
@@ -114,9 +115,7 @@ class Answerer {
 
   bool fly(const json& head) {
     FlightPlan plan;
-    plan.configuration.rate = LoopRate::parse(head.at("rate").get<std::string>()).value();
-    plan.configuration.plant_configuration = PlantConfiguration{
-        head.at("vehicle").get<std::string>(), head.at("plant").get<PlantKind>()};
+    plan.configuration = configuration_from(head.at("configuration"));
     plan.timing.unit = ticks_from(head.at("ticks"));
     plan.timing.attitude_unit = ticks_from(head.at("attitude_ticks"));
     plan.from_one_period_on = head.at("from_one_period_on").get<bool>();
@@ -131,6 +130,14 @@ class Answerer {
       answer["attitude_parameters"] = changes_json(attitude->parameters);
       blobs.push_back(blob_of(attitude->samples));
     }
+    return send(std::move(answer), blobs);
+  }
+
+  bool fly_live(const json& head) {
+    const auto flight = host_.fly_live(live_plan_from(head), {});
+    if (!flight) return refuse(flight.error(), question_.request, judge_);
+    std::vector<Blob> blobs;
+    json answer = live_json(*flight, blobs);
     return send(std::move(answer), blobs);
   }
 
@@ -175,16 +182,6 @@ auto read_answer(const Arrived& arrived, Read read)
   return Result<decltype(answer)>(tl::in_place, std::move(answer));
 }
 
-// The next blob, which must have `count` objects.
-template <typename T>
-std::vector<T> objects_from(const Arrived& arrived, std::size_t count, const char* what,
-                            JsonReader& head) {
-  auto objects = arrived.blobs.read<T>(count);
-  if (objects) return *std::move(objects);
-  head.wrong(fmt::format("the {} have a wrong size", what));
-  return {};
-}
-
 // Reads the number of ticks of a flight or of a timing.
 std::size_t ticks_from(JsonReader& head, const char* key, std::size_t all, bool may_end_early) {
   const auto ticks = static_cast<std::size_t>(head.count(key, all));
@@ -196,7 +193,7 @@ std::size_t ticks_from(JsonReader& head, const char* key, std::size_t all, bool 
 
 Trace flown_trace(const Arrived& arrived, JsonReader& head, Module module, std::size_t ticks) {
   Trace trace;
-  trace.samples = objects_from<Sample>(arrived, ticks, "samples", head);
+  trace.samples = objects_from<Sample>(arrived.blobs, ticks, "samples", head);
   trace.present = channels_of(module);
   return trace;
 }
@@ -210,7 +207,7 @@ void read_motors_unit(const Arrived& arrived, const FlightPlan& plan, JsonReader
   flown.trace =
       flown_trace(arrived, head, is_cascade ? Module::rate_unit : Module::mc_att_control, ticks);
   flown.trace.parameters = changes_from(head, "parameters", all);
-  flown.trace.plant = objects_from<PlantSample>(arrived, ticks, "samples of the plant", head);
+  flown.trace.plant = objects_from<PlantSample>(arrived.blobs, ticks, "samples of the plant", head);
 }
 
 void read_attitude_unit(const Arrived& arrived, const FlightPlan& plan, JsonReader& head,
@@ -233,9 +230,7 @@ std::string drive_request(const ModuleUnderTest& subject, const Trace& trace) {
 
 std::string fly_request(const FlightPlan& plan) {
   return text_of({{"do", "fly"},
-                  {"rate", plan.configuration.rate.to_string()},
-                  {"vehicle", plan.configuration.plant_configuration->vehicle},
-                  {"plant", plan.configuration.plant_configuration->plant},
+                  {"configuration", to_json(plan.configuration)},
                   {"ticks", plan.timing.unit.size()},
                   {"attitude_ticks", plan.timing.attitude_unit.size()},
                   {"from_one_period_on", plan.from_one_period_on}});
@@ -258,7 +253,7 @@ Result<Driven> read_driven(const Arrived& arrived, const ModuleUnderTest& subjec
   const std::size_t size = ticks * info_of(subject.module).out.size;
   return read_answer(arrived, [&](JsonReader& head) {
     Driven driven;
-    driven.outputs = objects_from<std::byte>(arrived, size, "outputs", head);
+    driven.outputs = objects_from<std::byte>(arrived.blobs, size, "outputs", head);
     driven.fault = fault_from(head, subject.part.first_tick + ticks, arrived.of_program);
     return driven;
   });
@@ -279,13 +274,20 @@ Result<Result<Flown>> read_flown(const Arrived& arrived, const FlightPlan& plan,
   });
 }
 
+Result<Result<LiveFlight>> read_live(const Arrived& arrived, const LiveRequest& request) {
+  return read_answer(arrived, [&](JsonReader& head) -> Result<LiveFlight> {
+    if (head.has("error")) return error_in(head);
+    return live_from(request, arrived.of_program, head, arrived.blobs);
+  });
+}
+
 Result<Result<StepTimes>> read_times(const Arrived& arrived, std::size_t ticks) {
   return read_answer(arrived, [&](JsonReader& head) -> Result<StepTimes> {
     if (head.has("error")) return error_in(head);
     StepTimes times;
     times.fault = fault_from(head, ticks, arrived.of_program);
     const std::size_t count = ticks_from(head, "steps", ticks, times.fault.has_value());
-    times.steps = objects_from<Nanoseconds>(arrived, count, "steps", head);
+    times.steps = objects_from<Nanoseconds>(arrived.blobs, count, "steps", head);
     const auto is_sane = [](Nanoseconds step) {
       return step >= Nanoseconds(0) && step <= std::chrono::hours(1);
     };

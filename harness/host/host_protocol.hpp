@@ -6,28 +6,30 @@
 //     process -> {"request": 0, "says": {...}}              once, when the port is loaded
 //     judge   -> {"do": "drive", "subject": ..., ...}       the module's inputs, tick by tick
 //     process -> {"request": 1, "fault": {...}}             its outputs
-//     judge   -> {"do": "fly", "rate": "250", ...}          LoopTicks of the unit, those of the
+//     judge   -> {"do": "fly", "configuration": ...}        LoopTicks of the unit, those of the
 //                                                           attitude unit (empty: no cascade)
 //     process -> {"request": 2, "fault", "divergence", "parameters", ...}
 //                                                           samples, plant samples
 //                of the cascade also "attitude_ticks", "attitude_parameters"
 //                                                           and the attitude unit's samples
+//     judge   -> {"do": "fly_live", ...}                    (a LivePlan)
+//     process -> {"request": 3, "units": [...], ...}        live_message.hpp
 //     judge   -> {"do": "time", "subject": ..., ...}        the module's inputs, tick by tick
-//     process -> {"request": 3, "fault", "clock_ns", "steps", "stack"}
+//     process -> {"request": 4, "fault", "clock_ns", "steps", "stack"}
 //                                                           nanoseconds of each step
 //     judge   -> {"do": "supports", "profile": ...}
-//     process -> {"request": 4, "supports": true}
+//     process -> {"request": 5, "supports": true}
 //
 // A long trace is driven in several requests, one for each Part (open_loop.hpp).
 //
 // "request" counts the requests, which may come in any order. {"request": n, "fault": {...}} alone
 // is the answer to any request if a program ended, or broke its protocol, outside of a step. Other
-// kinds of fault do not come alone.
+// kinds of fault come alone only in place of a live flight.
 //
 // {"request": n, "error": {...}} replaces the greeting if the port cannot be loaded, and the answer
-// to "fly" or "time" if attest cannot do that. The port's code runs in that process, so the judge
-// does not trust its messages. It checks each member where it arrives: its type, and its range. A
-// message with a wrong member, or that does not answer its request, is a broken protocol.
+// to "fly", "fly_live" or "time" if attest cannot do that. The port's code runs in that process, so
+// the judge does not trust its messages. It checks each member where it arrives: its type, and its
+// range. A message with a wrong member, or that does not answer its request, is a broken protocol.
 #pragma once
 
 #include <cstddef>
@@ -35,6 +37,7 @@
 #include <optional>
 #include <string>
 
+#include "harness/host/live_message.hpp"
 #include "harness/host/port_host.hpp"
 #include "harness/host/trace_message.hpp"
 #include "harness/process/message_socket.hpp"
@@ -68,6 +71,7 @@ Result<Driven> read_driven(const Arrived& arrived, const ModuleUnderTest& subjec
 // The traces of the result have no `source`. `duration`: of the case.
 Result<Result<Flown>> read_flown(const Arrived& arrived, const FlightPlan& plan,
                                  Nanoseconds duration);
+Result<Result<LiveFlight>> read_live(const Arrived& arrived, const LiveRequest& request);
 Result<Result<StepTimes>> read_times(const Arrived& arrived, std::size_t ticks);
 Result<bool> read_supports(const Arrived& arrived);
 Result<Result<Declarations>> read_greeting(const Arrived& arrived);

@@ -65,6 +65,22 @@ Result<Flown> InProcessHost::fly(const FlightPlan& plan) {
   });
 }
 
+Result<LiveFlight> InProcessHost::fly_live(const LivePlan& plan, const LiveWatch& watch) {
+  const Case& whole = *course_.the_case;
+  return ports_.run([&] {
+    Result<LiveFlight> flight = LiveFlight();
+    std::optional<PortFault> refusal;
+    if (const auto units = units_for(whole, driven())) {
+      flight = attest::fly_live(whole, plan, *course_.vehicle_model, units->for_flight(),
+                                calls_ ? calls_->watch() : watch);
+    } else {
+      refusal = units.error();
+    }
+    if (flight) flight->fault = held(std::move(refusal), whole.profile);
+    return flight;
+  });
+}
+
 Result<StepTimes> InProcessHost::time_steps(const ModuleUnderTest& subject, const Trace& inputs,
                                             bool with_stack) {
   if (!clock_) clock_ = time_of_clock();

@@ -15,14 +15,15 @@ namespace attest {
 class InProcessHost final : public PortHost {
  public:
   // `said`: the port's declarations before the run, which must stay the same. Empty: its
-  // declarations now. `calls`: where the port's calls are noted; outlives this. Null: the calls are
-  // not noted.
+  // declarations now. `calls`: where the port's calls are noted, and from where fly_live() is
+  // watched; outlives this. Null: the calls are not noted.
   InProcessHost(std::unique_ptr<Port> port, std::optional<Declarations> said = {},
                 Course course = {}, const PortCalls* calls = nullptr);
 
   const Declarations& declarations() const override { return declarations_; }
   std::optional<PortFault> drive(const ModuleUnderTest& subject, Trace& trace) override;
   Result<Flown> fly(const FlightPlan& plan) override;
+  Result<LiveFlight> fly_live(const LivePlan& plan, const LiveWatch& watch) override;
   Result<StepTimes> time_steps(const ModuleUnderTest& subject, const Trace& inputs,
                                bool with_stack) override;
   bool supports(const std::string& profile) override;

@@ -35,6 +35,10 @@ struct PortCalls::Now {
   // In a live flight of the cascade, the attitude unit has a thread of its own.
   RunningCall running, of_attitude_unit;
   std::atomic<std::uint64_t> count{0};
+  // Of a live flight. The progress may be read between two of its numbers: it is only shown.
+  std::atomic<std::int64_t> time_ns{0};
+  std::atomic<std::uint64_t> deadlines{0}, missed{0};
+  std::atomic<bool> stop{false};
 
   RunningCall& of(Module module) {
     return module == Module::attitude_unit ? of_attitude_unit : running;
@@ -43,6 +47,7 @@ struct PortCalls::Now {
 // Two processes share these, so they must not contain a lock.
 static_assert(std::atomic<Call>::is_always_lock_free);
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
+static_assert(std::atomic<bool>::is_always_lock_free);
 
 namespace {
 
@@ -172,6 +177,26 @@ std::string PortCalls::current() const {
 }
 
 std::uint64_t PortCalls::count() const { return now_->count.load(std::memory_order_relaxed); }
+
+void PortCalls::begin_flight() const {
+  now_->time_ns = 0;
+  now_->stop = false;
+}
+
+void PortCalls::ask_to_stop() const { now_->stop = true; }
+
+LiveProgress PortCalls::progress() const {
+  return {Nanoseconds(now_->time_ns), now_->deadlines, now_->missed};
+}
+
+LiveWatch PortCalls::watch() const {
+  const auto publish = [this](const LiveProgress& progress) {
+    now_->deadlines = progress.deadlines;
+    now_->missed = progress.missed;
+    now_->time_ns = progress.time.count();
+  };
+  return {[this] { return now_->stop.load(); }, publish};
+}
 
 std::unique_ptr<Port> PortCalls::noted(Port& port) const {
   return std::make_unique<NotedPort>(port, *now_);

@@ -1,6 +1,7 @@
 // The call of the port that runs now, in memory that the port's process shares with its judge.
 // After a crash or a timeout the judge reads there in which call, and at which tick, the port was.
-// While the judge waits for a program, it sees there whether the program still answers.
+// While the judge waits for a program or a live flight, it sees there whether the port still
+// answers. In a live flight it also sees the progress there, and there it asks to end the flight.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +10,7 @@
 
 #include "harness/core/result.hpp"
 #include "harness/port/port.hpp"
+#include "harness/realtime/live_flight.hpp"
 
 namespace attest {
 
@@ -27,6 +29,14 @@ class PortCalls {
 
   // How many calls have begun so far.
   std::uint64_t count() const;
+
+  // Of the judge, for a live flight. The progress is 0 until the flight begins.
+  void begin_flight() const;
+  void ask_to_stop() const;
+  LiveProgress progress() const;
+
+  // Of the port's process: publishes the progress, and stops the flight when the judge asks.
+  LiveWatch watch() const;
 
   // Returns `port`, with create() and each call of its units noted. For use in the port's process.
   // This object and `port` must outlive the result. A single `unit` is noted as a controller.

@@ -1,5 +1,6 @@
-// A running port, and the requests to it: take a trace, fly, be timed. A judge uses a port through
-// this interface only: in another process, in its own process, or recorded in files.
+// A running port, and the requests to it: take a trace, fly, fly in real time, be timed. A judge
+// uses a port through this interface only: in another process, in its own process, or recorded in
+// files.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +13,7 @@
 #include "harness/loop/case_timing.hpp"
 #include "harness/loop/flight.hpp"
 #include "harness/loop/open_loop.hpp"
+#include "harness/realtime/live_flight.hpp"
 
 namespace attest {
 
@@ -56,6 +58,10 @@ class PortHost {
 
   // Same as fly() of flight.hpp, with fresh units. REQUIRES: the host was started with a course.
   virtual Result<Flown> fly(const FlightPlan& plan) = 0;
+
+  // Same as fly_live() of live_flight.hpp, with fresh units. If `watch` stops it, the result is the
+  // flight so far. REQUIRES: same as fly().
+  virtual Result<LiveFlight> fly_live(const LivePlan& plan, const LiveWatch& watch) = 0;
 
   // Same as drive(), but measures each step, discards the outputs, and ignores subject.instances.
   // Errors: no memory for the stack.

@@ -16,6 +16,7 @@ namespace attest {
 namespace {
 
 using Kind = Received::Kind;
+using Clock = std::chrono::steady_clock;
 
 // A flight that diverges does so before this time.
 Nanoseconds duration_of(const Case& the_case, const FlightPlan& plan) {
@@ -89,6 +90,42 @@ class PortProcess final : public PortHost {
     return *std::move(flown);
   }
 
+  Result<LiveFlight> fly_live(const LivePlan& plan, const LiveWatch& watch) override {
+    const Case& the_case = *course_.the_case;
+    const LoopRate& rate = plan.configuration.rate;
+    const auto began = Clock::now();
+    bool is_stopping = false;
+    if (port_) port_->calls->begin_flight();
+    const auto look = [&, shown = began]() mutable {
+      is_stopping = is_stopping || watch.stop();
+      if (is_stopping) port_->calls->ask_to_stop();
+      const LiveProgress now = port_->calls->progress();
+      if (now.time == Nanoseconds(0) || Clock::now() < shown) return;
+      watch.progress(now);
+      shown = Clock::now() + std::chrono::seconds(1);
+    };
+    const auto read = [&](const Arrived& arrived) {
+      // The flight was after the request. A deadline can be one period after its end.
+      const Nanoseconds period = rate.attitude_unit.value_or(rate.motor_unit).tick(1);
+      const Nanoseconds longest = Clock::now() - began + std::max(period, rate.motor_unit.tick(1));
+      return read_live(arrived, {the_case, plan, longest, is_stopping});
+    };
+    auto flown = ask(live_request(plan), {}, read, the_case.duration.on(rate.motor_unit), look);
+    if (!flown) {
+      LiveFlight none;
+      none.fault = fault_;
+      return none;
+    }
+    if (!*flown) return *std::move(flown);
+    LiveFlight& flight = **flown;
+    flight.fault = judged(flight.fault, the_case.profile);
+    flight.unit.fault = judged(flight.unit.fault, the_case.profile);
+    if (auto& attitude = flight.attitude_unit) {
+      attitude->fault = judged(attitude->fault, the_case.profile);
+    }
+    return *std::move(flown);
+  }
+
   Result<StepTimes> time_steps(const ModuleUnderTest& subject, const Trace& inputs,
                                bool with_stack) override {
     const auto sent = info_of(subject.module).all_inputs().copy(inputs.samples);
@@ -120,9 +157,11 @@ class PortProcess final : public PortHost {
   std::string last_words() const { return port_ ? port_->child.last_words() : ""; }
 
  private:
-  // An error after a fault of the port, in this request or before; fault_ has it.
+  // An error after a fault of the port, in this request or before; fault_ has it. `duration`: of a
+  // live flight. `look` is called while the answer is awaited.
   template <typename Read>
-  auto ask(const std::string& question, const std::vector<Blob>& blobs, Read read)
+  auto ask(const std::string& question, const std::vector<Blob>& blobs, Read read,
+           Nanoseconds duration = {}, const std::function<void()>& look = {})
       -> std::invoke_result_t<Read, const Arrived&> {
     const bool was_asked = std::exchange(was_asked_, true);
     if (fault_) {
@@ -130,16 +169,17 @@ class PortProcess final : public PortHost {
       return fail(fault_->what);
     }
     ++request_;
-    const Patience limit = patience();
+    const Patience limit = patience(duration, look);
     // If the request cannot be sent, the wait for the answer finds out why.
     port_->child.socket().send(question, blobs, limit);
     return answer_from("", limit, std::move(read));
   }
 
-  Patience patience() {
+  Patience patience(Nanoseconds duration = {}, const std::function<void()>& look = {}) {
+    AnswerMeter of_answer(*port_, options_.timeout_s, kind_of(options_.port).is_program, duration);
     Patience limit;
-    limit.given_up = [this, meter = AnswerMeter(*port_, options_.timeout_s,
-                                                kind_of(options_.port).is_program)]() mutable {
+    limit.given_up = [this, look, meter = of_answer]() mutable {
+      if (look) look();
       exceeded_ = meter.exceeded();
       return exceeded_ != AnswerMeter::Limit::none || options_.stop();
     };
@@ -290,11 +330,6 @@ Result<PortDescription> describe_callable(const HostOptions& options,
 
 }  // namespace
 
-void hold_to(const PortDescription& port, HostOptions& options) {
-  options.hangs = port.hangs;
-  if (port.hangs.empty()) options.said = port;
-}
-
 Result<PortDescription> describe_port(const HostOptions& options,
                                       const std::vector<std::string>& profiles) {
   if (!kind_of(options.port).is_callable()) {
@@ -307,31 +342,6 @@ Result<PortDescription> describe_port(const HostOptions& options,
   Result<PortDescription> described;
   in_own_arena([&] { described = describe_callable(options, profiles); });
   return described;
-}
-
-Result<PortDescription> prepare_port(HostOptions& options,
-                                     const std::vector<std::string>& profiles) {
-  const auto store = [&](Result<PortFiles> files) {
-    return files.map([&](PortFiles& read) {
-      options.files = std::make_shared<const PortFiles>(std::move(read));
-    });
-  };
-  const auto hashed = store(PortFiles::read(options.port));
-  auto port = describe_port(options, profiles);
-  // If a file is no port, the error of loading it is the better one.
-  if (!port) return port;
-  if (!hashed) return tl::unexpected(hashed.error());
-  if (kind_of(options.port).is_program && !port->files.empty()) {
-    if (auto again = store(PortFiles::read(options.port, port->files)); !again) {
-      return tl::unexpected(again.error());
-    }
-  }
-  hold_to(*port, options);
-  return port;
-}
-
-Result<void> check_port(const HostOptions& options) {
-  return options.files ? options.files->check(PortFiles::Untouched::hashed) : Result<void>();
 }
 
 }  // namespace attest

@@ -70,6 +70,12 @@ class RecordedHost final : public PortHost {
     return none;
   }
 
+  Result<LiveFlight> fly_live(const LivePlan&, const LiveWatch&) override {
+    LiveFlight none;
+    none.fault = unanswered("a recorded port does not fly");
+    return none;
+  }
+
   Result<StepTimes> time_steps(const ModuleUnderTest&, const Trace&, bool) override {
     StepTimes none;
     none.fault = unanswered("a recorded port cannot be timed");

@@ -16,6 +16,7 @@ namespace attest {
 //                   file, is not in the manifest, or needs several instances of the port.
 //                   Fault Kind::protocol: its file cannot be used
 //     fly           fault Kind::unanswered
+//     fly_live      fault Kind::unanswered
 //     time_steps    fault Kind::unanswered
 //     supports      true if the manifest has a vector of the profile
 //

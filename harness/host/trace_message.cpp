@@ -62,6 +62,17 @@ std::vector<ParameterChange> changes_from(JsonReader& head, const char* key, std
   return changes;
 }
 
+json to_json(const RunConfiguration& configuration) {
+  return {{"rate", configuration.rate.to_string()},
+          {"vehicle", configuration.plant_configuration->vehicle},
+          {"plant", configuration.plant_configuration->plant}};
+}
+
+RunConfiguration configuration_from(const json& in) {
+  return {LoopRate::parse(in.at("rate").get<std::string>()).value(),
+          PlantConfiguration{in.at("vehicle").get<std::string>(), in.at("plant").get<PlantKind>()}};
+}
+
 void set_end(const std::optional<PortFault>& fault, const std::optional<Divergence>& lost,
              json& head) {
   if (fault) head["fault"] = {{"kind", fault->kind}, {"tick", fault->tick}, {"what", fault->what}};

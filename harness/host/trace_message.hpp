@@ -14,6 +14,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/casefile/run_configuration.hpp"
 #include "harness/core/json_reader.hpp"
 #include "harness/loop/unit_driver.hpp"
 #include "harness/plant/plant.hpp"
@@ -26,6 +27,10 @@ namespace attest {
 nlohmann::json changes_json(const std::vector<ParameterChange>& changes);
 // Range: ticks up to `ticks`. A name is any text: the judge compares it with that of the case.
 std::vector<ParameterChange> changes_from(JsonReader& head, const char* key, std::size_t ticks);
+
+// Of a flight: the plant configuration is set. The judge is trusted.
+nlohmann::json to_json(const RunConfiguration& configuration);
+RunConfiguration configuration_from(const nlohmann::json& json);
 
 // Writes and reads how a port's outputs, or its flight, ended. Range: a tick up to `ticks`, a time
 // from 0 to `longest`. A process cannot report its own crash or timeout. If the port is a program
@@ -69,5 +74,15 @@ class BlobReader {
   std::size_t next_ = 0;
   std::function<bool(void*, std::size_t)> read_;
 };
+
+// The next blob, which must have `count` objects.
+template <typename T>
+std::vector<T> objects_from(BlobReader& blobs, std::size_t count, const char* what,
+                            JsonReader& head) {
+  auto objects = blobs.read<T>(count);
+  if (objects) return *std::move(objects);
+  head.wrong(std::string("the ") + what + " have a wrong size");
+  return {};
+}
 
 }  // namespace attest

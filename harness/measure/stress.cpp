@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "harness/loop/flight.hpp"
 #include "harness/loop/timing_file.hpp"
 #include "harness/measure/stress_judge.hpp"
 #include "harness/verify/evaluate.hpp"
@@ -19,14 +18,46 @@ Nanoseconds nanoseconds(double microseconds) {
   return Nanoseconds(static_cast<std::int64_t>(std::min(microseconds, longest_us) * 1000));
 }
 
+// The result if the port's declarations before the run exclude the task; else empty.
+std::optional<StressResults> declined(const StressTask& task) {
+  StressResult stress;
+  stress.result = result_for(task.the_case, task.configuration);
+  const auto& step = task.port.fixed_step;
+  const LoopRate& rate = task.configuration.rate;
+  if (step && (*step != rate.motor_unit || *step != rate.attitude_unit.value_or(rate.motor_unit))) {
+    stress.result.verdict = Verdict::unsupported;
+    stress.result.reason = fmt::format("the port has a fixed step of {} Hz", step->to_string());
+    return StressResults{stress};
+  }
+  if (!marks_declined(task.port, stress.result)) return std::nullopt;
+  return StressResults{stress};
+}
+
+using TimeOfTick = Nanoseconds (LiveTick::*)() const;
+
+Histogram histogram_of(const std::vector<LiveTick>& ticks, TimeOfTick time) {
+  Histogram histogram;
+  for (const LiveTick& tick : ticks) histogram.add((tick.*time)());
+  return histogram;
+}
+
+Nanoseconds longest_gap(const std::vector<LiveTick>& ticks) {
+  Nanoseconds longest{0};
+  for (std::size_t i = 1; i < ticks.size(); ++i) {
+    longest = std::max(longest, ticks[i].begins - ticks[i - 1].begins);
+  }
+  return longest;
+}
+
 }  // namespace
 
 void summarise(const LiveFlight& flight, const LiveUnitRecord& unit, const Rate& rate,
                const RealtimeBudget& budget, StressResult& stress) {
-  stress.latency = percentiles_of(unit.latency);
-  stress.execution = percentiles_of(unit.execution);
-  stress.response = percentiles_of(unit.response);
-  stress.age = percentiles_of(unit.age);
+  const Histogram execution = histogram_of(unit.ticks, &LiveTick::execution);
+  stress.execution = percentiles_of(execution);
+  stress.latency = percentiles_of(histogram_of(unit.ticks, &LiveTick::latency));
+  stress.response = percentiles_of(histogram_of(unit.ticks, &LiveTick::response));
+  stress.age = percentiles_of(histogram_of(unit.ticks, &LiveTick::age));
   stress.plant = percentiles_of(flight.plant.latency);
   stress.ticks = unit.ticks.size();
   stress.deadlines = unit.ticks.size() + unit.skipped;
@@ -37,14 +68,14 @@ void summarise(const LiveFlight& flight, const LiveUnitRecord& unit, const Rate&
     const bool limited = budget.execution_us.has_value();
     if (limited && tick.execution() > nanoseconds(*budget.execution_us)) ++stress.overruns;
   }
-  stress.plant_steps = flight.plant.steps;
+  stress.plant_steps = flight.plant.steps();
   stress.plant_late_steps = flight.plant.late_steps;
-  stress.longest_gap = unit.longest_gap;
-  stress.wall = flight.wall;
+  stress.longest_gap = longest_gap(unit.ticks);
+  if (!flight.unit.ticks.empty()) stress.wall = flight.unit.ticks.back().begins;
   stress.unit_usage = unit.usage;
   stress.plant_usage = flight.plant.usage;
   stress.privileges = flight.privileges;
-  stress.slow = slow_ticks(unit.ticks, unit.execution.percentile(0.5));
+  stress.slow = slow_ticks(unit.ticks, execution.percentile(0.5));
 }
 
 Percentiles percentiles_of(const Histogram& histogram) {
@@ -64,59 +95,23 @@ const Rate& StressResult::unit_rate() const {
   return module == Module::attitude_unit ? *result.rate.attitude_unit : result.rate.motor_unit;
 }
 
-Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
-                                       const std::function<bool()>& stop,
-                                       const std::function<void(const StressProgress&)>& progress) {
-  StressMeasurement measured;
-  const bool is_cascade = task.the_case.attitude_loop.has_value();
-  // The judge uses the modules declared before the run, so they must not have changed.
-  if (is_cascade && port.modules() != task.port.modules) return measured;
-  const auto units = units_for(task.the_case, port);
-  if (!units) {
-    if (units.error().kind != PortFault::Kind::profile) measured.refusal = units.error();
-    return measured;
-  }
-  progress({{}, true});
-  const LoopRate& rate = task.configuration.rate;
-  const Histogram idle = idle_latency(rate.motor_unit, task.idle_duration, task.live, stop);
-  auto flight =
-      fly_live(task.the_case, task.configuration, *task.vehicle_model, units->for_flight(),
-               task.live, checked_ticks, stop, [&](const LiveProgress& live) {
-                 progress({live, false});
-               });
-  if (!flight) return tl::unexpected(flight.error());
-  const RealtimeBudget& budget = task.the_case.flight->realtime;
-  summarise(*flight, flight->unit, rate.motor_unit, budget, measured.stress);
-  measured.stress.idle = percentiles_of(idle);
-  if (const auto& attitude_unit = flight->attitude_unit) {
-    StressResult& stress = measured.attitude_unit.emplace();
-    summarise(*flight, *attitude_unit, *rate.attitude_unit, budget, stress);
-    stress.idle = measured.stress.idle;
-  }
-  measured.flight = *std::move(flight);
-  return measured;
-}
-
 TimelineLimits limits_of(const RealtimeBudget& budget) {
   TimelineLimits limits{std::nullopt, nanoseconds(budget.p99_latency_us)};
   if (budget.execution_us) limits.execution = nanoseconds(*budget.execution_us);
   return limits;
 }
 
-Result<StressResults> judge_live(const StressTask& task, StressMeasurement measurement) {
-  const auto fresh = [&](StressResult stress) {
-    stress.result = result_for(task.the_case, task.configuration);
-    return stress;
-  };
+Result<StressResults> judge_live(const StressTask& task, const Percentiles& idle,
+                                 LiveFlight flight) {
   StressResults results;
-  if (!measurement.flight) {
-    results.push_back(fresh(std::move(measurement.stress)));
-    const PortFault no_unit = no_unit_of(task.the_case.profile, task.port);
-    const auto refusal = measurement.refusal.value_or(no_unit);
-    judge(*held_to(task.port, task.the_case.profile, refusal), results.front().result);
+  const auto add = [&]() -> StressResult& {
+    results.emplace_back().result = result_for(task.the_case, task.configuration);
+    return results.back();
+  };
+  if (flight.fault) {
+    judge(*flight.fault, add().result);
     return results;
   }
-  LiveFlight& flight = *measurement.flight;
   if (task.record_timing) {
     const TimingFile timing{task.the_case.id(), task.the_case.sha256, task.configuration,
                             task.the_case.duration.amount, flight.timing()};
@@ -124,16 +119,36 @@ Result<StressResults> judge_live(const StressTask& task, StressMeasurement measu
       return tl::unexpected(written.error());
     }
   }
-  const auto add = [&](StressResult& stress, Module module) {
-    const bool is_cascade = task.the_case.attitude_loop.has_value();
+  const bool is_cascade = task.the_case.attitude_loop.has_value();
+  const auto judge_one = [&](Module module, const LiveUnitRecord& unit, const Rate& rate) {
     if (is_cascade && !contains(task.port.modules, module)) return;
-    results.push_back(fresh(std::move(stress)));
-    results.back().module = is_cascade ? std::optional(module) : std::nullopt;
-    judge_unit(task, module, flight, results.size() == 1, results.back());
+    StressResult& stress = add();
+    summarise(flight, unit, rate, task.the_case.flight->realtime, stress);
+    stress.idle = idle;
+    if (is_cascade) stress.module = module;
+    judge_unit(task, module, flight, results.size() == 1, stress);
   };
-  add(measurement.stress, task.the_case.module);
-  if (measurement.attitude_unit) add(*measurement.attitude_unit, Module::attitude_unit);
+  const LoopRate& rate = task.configuration.rate;
+  judge_one(task.the_case.module, flight.unit, rate.motor_unit);
+  if (const auto& attitude = flight.attitude_unit) {
+    judge_one(Module::attitude_unit, *attitude, *rate.attitude_unit);
+  }
   return results;
+}
+
+Result<StressResults> run_stress(const StressTask& task, const HostOptions& options,
+                                 const std::function<bool()>& stop,
+                                 const std::function<void(const StressProgress&)>& progress) {
+  if (auto unsupported = declined(task)) return *std::move(unsupported);
+  auto host = start_host(options, {&task.the_case, task.vehicle_model.get()});
+  if (!host) return tl::unexpected(host.error());
+  progress({{}, true});
+  const Percentiles idle = percentiles_of(
+      idle_latency(task.configuration.rate.motor_unit, task.idle_duration, task.live, stop));
+  const auto watch = [&](const LiveProgress& live) { progress({live, false}); };
+  auto flight = (*host)->fly_live({task.configuration, task.live, checked_ticks}, {stop, watch});
+  if (!flight) return tl::unexpected(flight.error());
+  return judge_live(task, idle, *std::move(flight));
 }
 
 }  // namespace attest

@@ -39,7 +39,7 @@ struct StressResult {
   // The unit of the cascade. Empty: the controller, or a result without measurements.
   std::optional<Module> module;
   Percentiles idle;  // wake-up latency of an idle thread (idle_latency())
-  Percentiles latency, execution, response, age;  // as in LiveUnitRecord
+  Percentiles latency, execution, response, age;  // as in LiveTick
   Percentiles plant;                              // wake-up latency of the plant
   std::uint64_t deadlines = 0;                    // releases: steps that ran, and skipped ones
   std::uint64_t ticks = 0;                        // steps that ran
@@ -47,11 +47,12 @@ struct StressResult {
   std::uint64_t overruns = 0;       // steps above RealtimeBudget::execution_us
   std::uint64_t waiting_steps = 0;  // steps with LiveTick::waited
   std::uint64_t plant_steps = 0, plant_late_steps = 0;
-  Nanoseconds longest_gap{0}, wall{0};
+  Nanoseconds longest_gap{0};  // between LiveTick::begins of a tick and of the next
+  Nanoseconds wall{0};         // from time 0 to the last tick of the unit of the motors
   Usage unit_usage, plant_usage;
   std::vector<RealtimePrivilege> privileges;
   SlowTicks slow;
-  FlightTimeline timeline;  // made by the judge's process; not in the JSON
+  FlightTimeline timeline;  // not in the JSON
   std::optional<Cyclictest> cyclictest;
 
   double per_million(std::uint64_t count) const;  // `count` per million deadlines
@@ -71,8 +72,7 @@ struct StressTask {
   Declarations port;  // the port's declarations before the run
   LiveOptions live;
   Nanoseconds idle_duration{0};
-  std::shared_ptr<AtomicFile> record_timing;       // for the timing; null: not written
-  Nanoseconds timeout = std::chrono::seconds(10);  // for each answer of the port
+  std::shared_ptr<AtomicFile> record_timing;  // for the timing; null: not written
 };
 
 // The outputs of the first ticks, at most this number, are kept and compared: half a minute at 8
@@ -84,30 +84,13 @@ struct StressProgress {
   bool idle = false;  // the idle machine is being measured; `live` is zero
 };
 
-// The measurements, without a verdict. The judge also uses the outputs, the ticks and the end of
-// `flight`.
-struct StressMeasurement {
-  StressResult stress;                        // of the unit that commands the motors
-  std::optional<StressResult> attitude_unit;  // in a flight of the cascade
-  std::optional<LiveFlight> flight;           // empty: the port did not make the units
-  // Why the port did not make the units. Empty: it makes no unit of the profile, or it has other
-  // modules than it declared before the run.
-  std::optional<PortFault> refusal;
-};
-
-// Flies the task in a child process, and judges it in this process. A port that crashes or hangs
-// gets a verdict. `stop` ends the flight early; the measurements so far are judged.
-// Errors: the port cannot be opened; the flight cannot be set up; the timing cannot be written.
+// Measures the idle machine at the rate of the unit that commands the motors, has the host fly the
+// task, and judges it. A port that crashes or hangs gets a verdict. `stop` ends the flight early;
+// the measurements so far are judged. Errors: the port cannot be opened; the flight cannot be set
+// up; the timing cannot be written.
 Result<StressResults> run_stress(const StressTask& task, const HostOptions& host,
                                  const std::function<bool()>& stop,
                                  const std::function<void(const StressProgress&)>& progress);
-
-// Runs in the port's process. The idle machine is measured at the rate of the unit that commands
-// the motors. Errors: the flight cannot be set up. REQUIRES: the port's declarations do not exclude
-// the task (run_stress() checks that).
-Result<StressMeasurement> measure_live(const StressTask& task, Port& port,
-                                       const std::function<bool()>& stop,
-                                       const std::function<void(const StressProgress&)>& progress);
 
 // Fills `stress` from the record of a unit of the flight, except the verdict, the module, the
 // timeline, the idle machine's latency, and cyclictest. `rate` is that of the unit.
@@ -116,8 +99,9 @@ void summarise(const LiveFlight& flight, const LiveUnitRecord& unit, const Rate&
 
 TimelineLimits limits_of(const RealtimeBudget& budget);
 
-// Judges the measurement, and writes the timing of the flight if the task has a file for it.
-// Errors: the file cannot be written.
-Result<StressResults> judge_live(const StressTask& task, StressMeasurement measurement);
+// Judges the flight, and writes its timing if the task has a file for it. `idle`: of the idle
+// machine. Errors: the file cannot be written.
+Result<StressResults> judge_live(const StressTask& task, const Percentiles& idle,
+                                 LiveFlight flight);
 
 }  // namespace attest

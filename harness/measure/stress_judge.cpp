@@ -178,9 +178,7 @@ void judge_unit(const StressTask& task, Module module, LiveFlight& flight, bool 
   result.ticks = stress.ticks;
   result.elapsed_s = in_seconds(stress.wall);
   stress.timeline = flight_timeline(unit->ticks, limits_of(task.the_case.flight->realtime));
-  if (const auto fault = held_to(task.port, task.the_case.profile, unit->fault)) {
-    return judge(*fault, result);
-  }
+  if (unit->fault) return judge(*unit->fault, result);
   if (task.port.fixed_step) {
     add_skip(result, "outputs not judged: a fixed step does not follow the times of a real clock");
   } else {

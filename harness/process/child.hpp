@@ -58,8 +58,6 @@ class Child {
   void kill() { process_.kill(); }
   bool was_killed() const { return process_.was_killed(); }
 
-  void ask_to_stop() { process_.terminate(); }  // SIGTERM, for work that handles it
-
   // Waits up to two seconds for the end, and returns Ending::to_string(). A child that still runs
   // then is killed, and the text is "closed the socket on which it answers, and went on". REQUIRES:
   // the child was killed, or its socket has ended.

@@ -42,12 +42,13 @@ ThreadWish plant_wish(const LiveOptions& options) {
   return {options.plant_cpu, options.fifo ? plant_priority : 0};
 }
 
-LoopTiming timing_of(const LiveUnitRecord& unit,
-                     const std::vector<std::optional<Nanoseconds>>& commanded) {
+LoopTiming timing_of(const LiveUnitRecord& unit) {
   LoopTiming timing;
   timing.reserve(unit.ticks.size());
-  for (std::size_t i = 0; i < unit.ticks.size(); ++i) {
-    timing.push_back({unit.ticks[i].sampled, unit.ticks[i].begins, commanded[i]});
+  for (const LiveTick& tick : unit.ticks) {
+    const bool was_used = tick.commanded >= Nanoseconds(0);
+    timing.push_back(
+        {tick.sampled, tick.begins, was_used ? std::optional(tick.commanded) : std::nullopt});
   }
   return timing;
 }
@@ -96,10 +97,11 @@ struct FlyingUnit {
 struct Flyers {
   // REQUIRES: same as fly_live(); `scripted` is bound to the vehicle. All outlive this.
   Flyers(const Case& scripted, const LoopRate& rate, const Vehicle& vehicle, Plant& flown,
-         FlightUnits units, const LiveOptions& options, std::size_t samples)
+         FlightUnits units, const LivePlan& plan)
       : plant_task(scripted, rate.motor_unit, vehicle, flown),
         origin(Pacer::now_monotonic() + settle_in),
-        setting{scripted, rate, vehicle, plant_task.state(), {origin, options.wait}, samples},
+        setting{scripted,    rate, vehicle, plant_task.state(), {origin, plan.options.wait},
+                plan.samples},
         unit(scripted.module, units.unit, setting, links),
         attitude_unit(scripted.attitude_loop
                           ? std::make_unique<FlyingUnit>(Module::attitude_unit,
@@ -150,13 +152,12 @@ LiveProgress progress_at(Nanoseconds now, const Flyers& flyers) {
   return progress;
 }
 
-void watch(Flyers& flyers, const std::function<bool()>& stop,
-           const std::function<void(const LiveProgress&)>& progress) {
+void look_after(Flyers& flyers, const LiveWatch& watch) {
   Pacer here(flyers.origin, Wait{});
   here.wait_until(Nanoseconds(0));
   while (!flyers.links.stop.load()) {
-    if (stop()) flyers.links.stop.store(true);
-    progress(progress_at(here.now(), flyers));
+    if (watch.stop()) flyers.links.stop.store(true);
+    watch.progress(progress_at(here.now(), flyers));
     std::this_thread::sleep_for(progress_every);
   }
 }
@@ -175,38 +176,46 @@ std::vector<RealtimePrivilege> privileges_of(const ProcessPrivileges& process,
   return all;
 }
 
+void set_commanded(const std::vector<std::optional<Nanoseconds>>& times,
+                   std::vector<LiveTick>& ticks) {
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    ticks[i].commanded = times[i].value_or(Nanoseconds(-1));
+  }
+}
+
 // REQUIRES: the threads have ended.
 LiveFlight flight_of(Flyers& flyers, const ProcessPrivileges& process) {
   LiveFlight flight;
   flight.unit = flyers.unit.live.take_record();
   flight.plant = flyers.plant.take_record();
   if (flyers.attitude_unit) flight.attitude_unit = flyers.attitude_unit->live.take_record();
+  set_commanded(std::exchange(flight.plant.commanded, {}), flight.unit.ticks);
+  if (auto& attitude = flight.attitude_unit) {
+    set_commanded(std::exchange(flight.unit.setpoints_received, {}), attitude->ticks);
+  }
   flight.privileges = privileges_of(process, flyers);
-  if (!flight.unit.ticks.empty()) flight.wall = flight.unit.ticks.back().begins;
   return flight;
 }
 
 }  // namespace
 
 FlightTiming LiveFlight::timing() const {
-  FlightTiming timing = timing_of(unit, plant.commanded);
-  if (attitude_unit) timing.attitude_unit = timing_of(*attitude_unit, unit.setpoints_received);
+  FlightTiming timing = timing_of(unit);
+  if (attitude_unit) timing.attitude_unit = timing_of(*attitude_unit);
   return timing;
 }
 
-Result<LiveFlight> fly_live(const Case& the_case, const RunConfiguration& configuration,
+Result<LiveFlight> fly_live(const Case& the_case, const LivePlan& plan,
                             const VehicleModel& vehicle_model, FlightUnits units,
-                            const LiveOptions& options, std::size_t samples,
-                            const std::function<bool()>& stop,
-                            const std::function<void(const LiveProgress&)>& progress) {
-  auto plant = plant_for(the_case, configuration, vehicle_model);
+                            const LiveWatch& watch) {
+  auto plant = plant_for(the_case, plan.configuration, vehicle_model);
   if (!plant) return tl::unexpected(plant.error());
   const Vehicle& vehicle = vehicle_model.vehicle();
   const Case scripted = bound_to_vehicle(the_case, vehicle);
   const ProcessPrivileges process;
-  Flyers flyers(scripted, configuration.rate, vehicle, **plant, units, options, samples);
-  std::vector<std::thread> threads = start(flyers, options);
-  watch(flyers, stop, progress);
+  Flyers flyers(scripted, plan.configuration.rate, vehicle, **plant, units, plan);
+  std::vector<std::thread> threads = start(flyers, plan.options);
+  look_after(flyers, watch);
   for (std::thread& thread : threads) thread.join();
   return flight_of(flyers, process);
 }

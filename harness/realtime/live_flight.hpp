@@ -27,9 +27,21 @@ struct LiveOptions {
   Wait wait;                        // of the units
 };
 
+struct LivePlan {
+  RunConfiguration configuration;
+  LiveOptions options;
+  std::size_t samples = 0;  // the samples of the first ticks of each unit are kept
+};
+
 struct LiveProgress {
   Nanoseconds time{0};
   std::uint64_t deadlines = 0, missed = 0;  // of all units, so far
+};
+
+// Both functions are called every tenth of a second in flight.
+struct LiveWatch {
+  std::function<bool()> stop = [] { return false; };  // true: ends the flight
+  std::function<void(const LiveProgress&)> progress = [](const LiveProgress&) {};
 };
 
 struct LiveFlight {
@@ -39,24 +51,23 @@ struct LiveFlight {
   // All privileges of the process and of the thread of `unit`, and those that were refused to the
   // other threads.
   std::vector<RealtimePrivilege> privileges;
-  Nanoseconds wall{0};  // from time 0 to the last tick of `unit`
+  // A fault of the port outside of its steps. All other members are then empty. fly_live() leaves
+  // this empty: only a PortHost sets it.
+  std::optional<PortFault> fault;
 
   // The times of the flight, with which a simulated flight can repeat it.
   FlightTiming timing() const;
 };
 
-// Flies the case to its end, or until `stop` is true, the vehicle is lost, or a port has a fault.
+// Flies the case to its end, or until `watch` stops it, the vehicle is lost, or a port has a fault.
 // The case's jitter and dropped ticks are not used: the real clock alone makes ticks late.
 // AttitudeLoop::delay of the cascade is used. A unit that the estimator triggers waits for the
-// plant's thread, which publishes a sample at each tick of the rate. Keeps the samples of the first
-// `samples` ticks of each unit. `progress` is called every tenth of a second. The plant's thread
-// samples the battery and runs the land detector, with the command that the motors follow.
-// REQUIRES: a flight; fresh units, one or both as the case says. Errors: those of fly().
-Result<LiveFlight> fly_live(const Case& the_case, const RunConfiguration& configuration,
+// plant's thread, which publishes a sample at each tick of the rate. The plant's thread samples the
+// battery and runs the land detector, with the command that the motors follow. REQUIRES: a flight;
+// fresh units, one or both as the case says. Errors: those of fly().
+Result<LiveFlight> fly_live(const Case& the_case, const LivePlan& plan,
                             const VehicleModel& vehicle_model, FlightUnits units,
-                            const LiveOptions& options, std::size_t samples,
-                            const std::function<bool()>& stop,
-                            const std::function<void(const LiveProgress&)>& progress);
+                            const LiveWatch& watch);
 
 // The wake-up latency of an idle thread at that rate, on the unit's CPU and with its privileges:
 // the latency of the machine itself.

@@ -33,7 +33,6 @@ void LivePlant::run() {
     const std::int64_t last_due = plan_.physics.ticks_in(woke + Nanoseconds(1)) - 1;
     const std::int64_t reached = std::max(step, last_due);
     record_.late_steps += static_cast<std::uint64_t>(reached - step);
-    record_.steps += static_cast<std::uint64_t>(reached - step + 1);
     record_.latency.add(woke - due);
     const Nanoseconds now = plan_.physics.tick(reached);
     if ((record_.divergence = advance(now))) break;

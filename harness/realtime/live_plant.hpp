@@ -17,14 +17,16 @@
 namespace attest {
 
 struct LivePlantRecord {
-  Histogram latency;
-  std::uint64_t steps = 0;
+  Histogram latency;             // of the wake-ups
   std::uint64_t late_steps = 0;  // made together with a later step, which was due too
   // For each tick of the unit that commands the motors: when the motors began to follow its
-  // command. Empty if a later command, or the end of the flight, came first.
+  // command. Empty if a later command, or the end of the flight, came first. In a LiveFlight the
+  // ticks have these times (LiveTick::commanded).
   std::vector<std::optional<Nanoseconds>> commanded;
   std::optional<Divergence> divergence;
   Usage usage;
+
+  std::uint64_t steps() const { return latency.count() + late_steps; }
 };
 
 struct LivePlantPlan {

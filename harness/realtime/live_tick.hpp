@@ -22,9 +22,12 @@ struct LiveTick {
   Nanoseconds cpu{0};         // CPU time of the unit's step and the mixer
   bool waited = false;        // the step gave up the CPU by itself: it slept, or waited for a lock
   std::uint32_t skipped = 0;  // releases skipped between this tick and the next
+  Nanoseconds commanded{-1};  // LoopTick::commanded; -1: its outputs were never used
 
   Nanoseconds latency() const { return start - release; }
   Nanoseconds response() const { return finish - release; }
+  // Of the sample that the step used, at its finish. Before the first sample: since time 0.
+  Nanoseconds age() const { return finish - std::max(sampled, Nanoseconds(0)); }
 
   // The CPU time of the step, so that preemption does not count. For a step that waits by itself it
   // is the elapsed time, because such waiting is the port's own delay. The two clocks are read one

@@ -115,7 +115,7 @@ void LiveUnit::count_skipped(std::int64_t k, std::int64_t next) {
   record_.skipped += skipped;
   if (ticks_ == 1) warm_ = thread_usage();
   passed_.store(static_cast<std::uint64_t>(next), std::memory_order_relaxed);
-  missed_.store(record_.late + record_.skipped, std::memory_order_relaxed);
+  missed_.store(late_ + record_.skipped, std::memory_order_relaxed);
 }
 
 Nanoseconds LiveUnit::tick(LiveTick due) {
@@ -190,15 +190,7 @@ std::optional<Saturation> LiveUnit::saturation_at(Nanoseconds now) {
 }
 
 void LiveUnit::write_down(const LiveTick& tick) {
-  record_.latency.add(tick.latency());
-  record_.execution.add(tick.execution());
-  record_.response.add(tick.response());
-  record_.age.add(tick.finish - latest_.time);
-  record_.late += tick.finish > tick.deadline ? 1 : 0;
-  if (ticks_ > 0) {
-    const Nanoseconds gap = tick.begins - record_.ticks[ticks_ - 1].begins;
-    record_.longest_gap = std::max(record_.longest_gap, gap);
-  }
+  late_ += tick.finish > tick.deadline ? 1 : 0;
   record_.ticks[ticks_] = tick;
   if (ticks_ < samples_max_) {
     record_.samples[ticks_] = task_.sample();

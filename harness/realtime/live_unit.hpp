@@ -14,7 +14,6 @@
 
 #include "harness/casefile/case.hpp"
 #include "harness/core/delay_line.hpp"
-#include "harness/core/histogram.hpp"
 #include "harness/core/loop_rate.hpp"
 #include "harness/loop/unit_task.hpp"
 #include "harness/realtime/clock.hpp"
@@ -25,14 +24,8 @@
 namespace attest {
 
 struct LiveUnitRecord {
-  Histogram latency;           // of the wake-ups
-  Histogram execution;         // as in LiveTick
-  Histogram response;          // as in LiveTick
-  Histogram age;               // of the sample used, at the finish of the step
-  std::uint64_t late = 0;      // responses longer than the period
-  std::uint64_t skipped = 0;   // skipped releases; all misses are late + skipped
-  Nanoseconds longest_gap{0};  // between LiveTick::begins of a tick and of the next
-  Usage usage;                 // without the first tick, which sets the parameters
+  std::uint64_t skipped = 0;  // releases, also those before the first tick
+  Usage usage;                // without the first tick, which sets the parameters
   std::vector<LiveTick> ticks;
   std::vector<Sample> samples;           // of the first ticks
   std::vector<ParameterChange> changes;  // of the same ticks
@@ -102,6 +95,7 @@ class LiveUnit {
   DelayLine<LiveRatesSetpoint> rates_setpoints_;
   std::optional<LandDetected> landed_;
   std::size_t ticks_ = 0, samples_max_;
+  std::uint64_t late_ = 0;  // responses longer than the period
   std::atomic<std::uint64_t> passed_{0}, missed_{0};
   Usage warm_;
   LiveUnitRecord record_;

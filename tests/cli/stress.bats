@@ -139,7 +139,7 @@ CHECK
 @test "a port that crashes or hangs in real time has a verdict" {
   run "$ATTEST" stress --port "lib:$PORTS/port_crash.so" --rates 250 --duration 0.5 "${open[@]}"
   [ "$status" -eq 1 ]
-  has "crash: the process "
+  has "crash: the port's process "
   for port in hang hangs_in_load hangs_in_create hangs_in_destroy; do
     run timeout -k 1 100 "$ATTEST" stress --port "lib:$PORTS/port_$port.so" --rates 250 \
       --duration 0.5 --timeout 0.5 "${open[@]}"

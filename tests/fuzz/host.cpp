@@ -1,4 +1,4 @@
-// The messages of a port's process (host_protocol.hpp, stress_json.hpp), which its port can forge.
+// The messages of a port's process (host_protocol.hpp), which its port can forge.
 // An input is a letter for the kind of message, its head in JSON up to a line feed, and the bytes
 // of its blobs. A message that is accepted has no value out of range.
 #include <algorithm>
@@ -8,9 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "harness/core/json_text.hpp"
 #include "harness/host/host_protocol.hpp"
-#include "harness/measure/stress_json.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace attest::fuzz {
@@ -87,10 +85,22 @@ void time(const Arrived& arrived) {
   for (const Nanoseconds step : (*times)->steps) require(step >= Nanoseconds(0), "a duration");
 }
 
-void stress(const std::string& head) {
-  const auto read = stress_from_json(json_from(head));
-  if (!read) return require_readable(read.error().message);
-  require(read->wall >= Nanoseconds(0) && read->latency.max >= Nanoseconds(0), "durations");
+void fly_live(const Arrived& arrived) {
+  Case the_case;
+  the_case.duration = {double{ticks}, Span::In::ticks};
+  const LivePlan plan{{Rate::hz(250), {}}, {}, ticks};
+  const auto flown = read_live(arrived, {the_case, plan, duration});
+  if (!is_accepted(flown) || !is_accepted(*flown)) return;
+  require_sane((*flown)->fault, arrived.of_program);
+  const LiveUnitRecord& unit = (*flown)->unit;
+  require(unit.ticks.size() + unit.skipped <= ticks, "at most the ticks of the plan");
+  require_sane(unit.fault, arrived.of_program);
+  require_sane(unit.changes);
+  for (const LiveTick& tick : unit.ticks) {
+    require(tick.finish >= Nanoseconds(0) && tick.finish <= duration, "a time in the flight");
+    require(tick.skipped <= ticks, "a number of skipped releases");
+  }
+  require((*flown)->plant.latency.min() >= Nanoseconds(0), "durations");
 }
 
 void receive(char kind, const std::string& head, std::string_view bytes) {
@@ -103,7 +113,7 @@ void receive(char kind, const std::string& head, std::string_view bytes) {
   if (kind == 'd') arrives({samples}, drive);
   if (kind == 'f') arrives({samples, ticks * sizeof(PlantSample)}, fly);
   if (kind == 't') arrives({ticks * sizeof(Nanoseconds)}, time);
-  if (kind == 's') stress(head);
+  if (kind == 'l') arrives({ticks * sizeof(LiveTick), samples}, fly_live);
 }
 
 }  // namespace

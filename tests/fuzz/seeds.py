@@ -146,13 +146,13 @@ def host_seeds():
     change = {"tick": 0, "name": "MC_ROLL_P", "bits": 0}
     flown = {"ticks": 3, "parameters": [change]}
     timed = {"steps": 3, "clock_ns": 20, "stack": 4096}
-    spread = {"count": 1, "min_ns": 1, "median_ns": 2, "max_ns": 3,
-              "buckets": [{"from_ns": 1, "below_ns": 2, "count": 1}]}  # fmt: skip
     usage = {"cpu_ns": 1, "allocations": 0, "page_faults": 0, "yields": 0, "preemptions": 0}
-    stress = {name: 1 for name in STRESS_NUMBERS} | {name: spread for name in STRESS_SPREADS}
-    stress |= {"unit": usage, "plant": usage, "result": RESULT}
-    stress |= {"privileges": [{"name": "mlockall", "got": True, "why": ""}]}
-    stress |= {"slow_steps": {"threshold_ns": 1, "count": 0, "worst": []}}
+    spread = {"min_ns": 1, "max_ns": 3, "buckets": [{"from_ns": 1, "count": 1}]}
+    unit = {"ticks": 3, "skipped": 0, "usage": usage, "parameters": [change]}
+    live = {"units": [unit], "plant": {"late_steps": 0, "usage": usage, "latency": spread}}
+    live |= {"privileges": [{"name": "mlockall", "got": True, "why": ""}]}
+    # Three LiveTicks with increasing `begins`.
+    ticks = b"".join(struct.pack("=9q?3xIq", *[0] * 5, k, *[0] * 5, -1) for k in (1, 2, 3))
     for kind, head in [
         ("g", {"says": says}),
         ("g", {"says": says | {"fraction_bits": 22, "fixed_step": "250"}}),
@@ -162,18 +162,10 @@ def host_seeds():
         ("f", flown),
         ("f", flown | {"divergence": {"at_ns": 1, "what": "lost"}}),
         ("t", timed),
-        ("s", stress),
+        ("l", live),
+        ("l", live | {"divergence": {"at_ns": 1, "what": "lost"}}),
     ]:
-        yield f"{kind}{json.dumps({'request': 1} | head)}\n".encode()
-
-
-RESULT = {"profile": "px4-v1.5.5", "group": "flight", "name": "hover", "rate": "250",
-          "verdict": "pass", "reason": "", "ticks": 0, "deviating_ticks": 0}  # fmt: skip
-STRESS_NUMBERS = """deadlines ticks late_responses skipped_releases deadline_misses_by_port
-late_starts late_starts_by_port overruns waiting_steps plant_steps plant_late_steps longest_gap_ns
-wall_ns""".split()
-STRESS_SPREADS = """idle_wake_up_latency wake_up_latency execution_time response_time sample_age
-plant_wake_up_latency""".split()
+        yield f"{kind}{json.dumps({'request': 1} | head)}\n".encode() + ticks * (kind == "l")
 
 
 def ulog_message(kind, body):

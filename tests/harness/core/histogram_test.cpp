@@ -30,6 +30,19 @@ TEST(Histogram, KnowsExactlyWhatIsRare) {
   EXPECT_EQ(histogram.mean(), ns(3'002'011 / 4));
 }
 
+TEST(Histogram, TakesSeveralEqualTimesAtOnce) {
+  Histogram histogram(ns(5));
+  histogram.add(ns(10), 3);
+  histogram.add(ns(2), 0);
+  histogram.add(ns(4));
+  EXPECT_EQ(histogram.count(), 4u);
+  EXPECT_EQ(histogram.over_limit(), 3u);
+  EXPECT_EQ(histogram.mean(), ns(34 / 4));
+  EXPECT_EQ(histogram.min(), ns(2));
+  EXPECT_EQ(histogram.percentile(0.25), ns(4));
+  EXPECT_EQ(histogram.percentile(0.5), ns(10));
+}
+
 TEST(Histogram, TakesWhatIsBeyondItsBins) {
   Histogram histogram;
   histogram.add(ns(-5));  // of a clock that is read on two CPUs

@@ -143,6 +143,37 @@ TEST(PortProcess, FliesAsHere) {
   EXPECT_TRUE(here->trace.present == apart->trace.present);
 }
 
+// In this process and in another: the flight that the plan has, or the part before a request to
+// stop.
+TEST(PortProcess, FliesInRealTimeUntilItIsAskedToStop) {
+  Case hover = *parse_case(source / "cases/px4-v1.5.5/flight/hover.toml");
+  const auto iris = *VehicleModel::load(source / "models", "iris");
+  const int cpu = usable_cpus().front();
+  const LivePlan plan{
+      {Rate::hz(100), PlantConfiguration{"iris", PlantKind::mujoco}}, {cpu, cpu, false, {}}, 5};
+  for (const bool in_process : {true, false}) {
+    const auto host = host_of("builtin", in_process, {&hover, iris.get()});
+    for (const double duration_s : {600.0, 0.3}) {
+      hover.duration = {duration_s, Span::In::seconds};
+      LiveProgress seen;
+      const LiveWatch watch{[&] { return duration_s > 1 && seen.time > Nanoseconds(0); },
+                            [&](const LiveProgress& now) { seen = now; }};
+      const auto flight = host->fly_live(plan, watch);
+      ASSERT_TRUE(flight) << flight.error().to_string();
+      EXPECT_FALSE(flight->fault) << flight->fault->what;
+      const LiveUnitRecord& flown = flight->unit;
+      EXPECT_EQ(flown.samples.size(), std::min<std::size_t>(flown.ticks.size(), 5));
+      EXPECT_GT(flight->plant.steps(), 0u);
+      EXPECT_FALSE(flight->privileges.empty());
+      if (duration_s < 1) {
+        EXPECT_EQ(flown.ticks.size() + flown.skipped, 30u);
+      } else {
+        EXPECT_LT(flown.ticks.size() + flown.skipped, 60'000u);
+      }
+    }
+  }
+}
+
 TEST(PortProcess, TimesEachStep) {
   const auto times = host_of("builtin")->time_steps({"px4-v1.5.5"}, pitching(), true);
   ASSERT_TRUE(times) << times.error().to_string();

@@ -46,6 +46,7 @@ class Host final : public PortHost {
   const Declarations& declarations() const override { return declarations_; }
   std::optional<PortFault> drive(const ModuleUnderTest&, Trace&) override { return {}; }
   Result<Flown> fly(const FlightPlan&) override { return Flown{}; }
+  Result<LiveFlight> fly_live(const LivePlan&, const LiveWatch&) override { return LiveFlight(); }
   Result<StepTimes> time_steps(const ModuleUnderTest&, const Trace&, bool) override {
     return StepTimes{};
   }

@@ -10,27 +10,26 @@
 
 namespace attest {
 
-inline LiveTick one_tick() {
+// The tick's outputs are used from `commanded` on.
+inline LiveTick one_tick(Nanoseconds commanded) {
   LiveTick tick;
   tick.sampled = us(1);
   tick.begins = us(2);
+  tick.commanded = commanded;
   return tick;
 }
 
-// The motors follow the tick's command from `commanded` on.
-inline StressMeasurement one_tick_flight(Nanoseconds commanded) {
-  StressMeasurement measured;
-  measured.flight.emplace();
-  measured.flight->unit.ticks = {one_tick()};
-  measured.flight->plant.commanded = {commanded};
-  return measured;
+inline LiveFlight one_tick_flight(Nanoseconds commanded) {
+  LiveFlight flight;
+  flight.unit.ticks = {one_tick(commanded)};
+  return flight;
 }
 
-inline Result<TimingFile> written_times(StressTask task, StressMeasurement measured) {
+inline Result<TimingFile> written_times(StressTask task, LiveFlight flight) {
   const TemporaryDirectory directory;
   const auto path = directory.path() / "timing.json";
   task.record_timing = std::make_shared<AtomicFile>(*AtomicFile::open(path));
-  const auto judged = judge_live(task, std::move(measured));
+  const auto judged = judge_live(task, {}, std::move(flight));
   return judged ? read_timing(path) : tl::unexpected(judged.error());
 }
 

@@ -34,9 +34,10 @@ StressTask cascade_task(const char* name = "hover.toml") {
 }
 
 StressResults stressed(const std::string& port, StressTask task) {
-  task.port = *describe_port(HostOptions{port}, {task.the_case.profile});
+  HostOptions host{port};
+  task.port = *prepare_port(host, {task.the_case.profile});
   auto results = run_stress(
-      task, HostOptions{port}, [] { return false; }, [](const StressProgress&) {});
+      task, host, [] { return false; }, [](const StressProgress&) {});
   if (!results) throw std::runtime_error(results.error().to_string());
   return *std::move(results);
 }
@@ -75,30 +76,30 @@ TEST(StressCascade, OnlyTheWrongUnitFails) {
 // A port could leave out a unit, and fly with that of the reference.
 TEST(StressCascade, APortWhoseModulesChangeBreaksTheRules) {
   StressTask task = cascade_task();
-  task.port.modules = only(Module::rate_unit);
-  task.port.profiles = {"px4-v1.16.0"};
+  HostOptions host;
+  task.port = *prepare_port(host, {"px4-v1.16.0"});
+  task.port.modules = host.said->modules = only(Module::rate_unit);
   const auto results = run_stress(
-      task, HostOptions{}, [] { return false; }, [](const StressProgress&) {});
+      task, host, [] { return false; }, [](const StressProgress&) {});
   ASSERT_TRUE(results) << results.error().to_string();
   ASSERT_EQ(results->size(), 1u);
   EXPECT_EQ(results->front().result.verdict, Verdict::protocol);
 }
 
 // Without a step, so the outputs cannot be judged.
-StressMeasurement measured_flight() {
-  StressMeasurement measured;
-  measured.flight.emplace().attitude_unit.emplace();
-  measured.attitude_unit.emplace();
-  return measured;
+LiveFlight flight_without_a_step() {
+  LiveFlight flight;
+  flight.attitude_unit.emplace();
+  return flight;
 }
 
 TEST(JudgeLiveCascade, AUnitOfTheReferenceIsNotJudged) {
   StressTask task = cascade_task();
   for (const Module module : {Module::rate_unit, Module::attitude_unit}) {
     task.port.modules = only(module);
-    StressMeasurement measured = measured_flight();
-    measured.flight->plant.divergence = Divergence{ms(100), "it fell"};
-    const auto results = judge_live(task, std::move(measured));
+    LiveFlight flight = flight_without_a_step();
+    flight.plant.divergence = Divergence{ms(100), "it fell"};
+    const auto results = judge_live(task, {}, std::move(flight));
     ASSERT_TRUE(results) << results.error().to_string();
     ASSERT_EQ(results->size(), 1u);
     EXPECT_EQ(results->front().module, module);
@@ -107,19 +108,19 @@ TEST(JudgeLiveCascade, AUnitOfTheReferenceIsNotJudged) {
 }
 
 TEST(JudgeLiveCascade, TheEndOfTheFlightCountsOnceForTheRateUnit) {
-  StressMeasurement measured = measured_flight();
-  measured.flight->plant.divergence = Divergence{ms(100), "it fell"};
-  const auto results = judge_live(cascade_task(), std::move(measured));
+  LiveFlight flight = flight_without_a_step();
+  flight.plant.divergence = Divergence{ms(100), "it fell"};
+  const auto results = judge_live(cascade_task(), {}, std::move(flight));
   ASSERT_EQ(results->size(), 2u);
   EXPECT_THAT(results->at(0).result.reason, HasSubstr("the flight ended at 0.100 s"));
   EXPECT_THAT(results->at(1).result.reason, testing::Not(HasSubstr("the flight ended")));
 }
 
 TEST(JudgeLiveCascade, AFaultOfOneUnitEndsTheFlightOfTheOther) {
-  StressMeasurement measured = measured_flight();
-  measured.flight->attitude_unit->fault =
+  LiveFlight flight = flight_without_a_step();
+  flight.attitude_unit->fault =
       PortFault{PortFault::Kind::protocol, 3, "it wrote beyond its struct"};
-  const auto results = judge_live(cascade_task(), std::move(measured));
+  const auto results = judge_live(cascade_task(), {}, std::move(flight));
   ASSERT_EQ(results->size(), 2u);
   EXPECT_EQ(results->at(0).result.verdict, Verdict::skip);
   EXPECT_THAT(results->at(0).result.reason,
@@ -129,11 +130,9 @@ TEST(JudgeLiveCascade, AFaultOfOneUnitEndsTheFlightOfTheOther) {
 
 TEST(JudgeLiveCascade, TheTimesOfBothUnitsAreWritten) {
   const StressTask task = cascade_task();
-  StressMeasurement measured = one_tick_flight(us(4));
-  measured.attitude_unit.emplace();
-  measured.flight->attitude_unit.emplace().ticks = {one_tick()};
-  measured.flight->unit.setpoints_received = {us(3)};
-  const auto read = written_times(task, std::move(measured));
+  LiveFlight flight = one_tick_flight(us(4));
+  flight.attitude_unit.emplace().ticks = {one_tick(us(3))};
+  const auto read = written_times(task, std::move(flight));
   ASSERT_TRUE(read) << read.error().to_string();
   EXPECT_EQ(read->configuration, task.configuration);
   EXPECT_EQ(read->ticks.unit, (LoopTiming{{us(1), us(2), us(4)}}));

@@ -34,7 +34,7 @@ class StressJudge : public testing::Test {
     for (std::int64_t k = 0; k < 100; ++k) {
       const Nanoseconds release = ms(4 * k);
       flight_.unit.ticks.push_back({k, release, release + ms(4), release, release, release});
-      flight_.plant.commanded.emplace_back(release);
+      flight_.unit.ticks.back().commanded = release;
     }
     stress_.ticks = stress_.deadlines = 10'000;
   }

@@ -53,7 +53,7 @@ class LivePlantTest : public testing::Test {
 TEST_F(LivePlantTest, StepsWhoseTimeHasPassedAreMadeUpInOneGo) {
   clock_.latency = [](Nanoseconds due) { return due == ms(3) ? us(2500) : ns(0); };
   const LivePlantRecord record = run();
-  EXPECT_EQ(record.steps, 8u);
+  EXPECT_EQ(record.steps(), 8u);
   EXPECT_EQ(record.late_steps, 2u);
   EXPECT_EQ(record.latency.max(), us(2500));
 }

@@ -34,6 +34,9 @@ class ChangedFlight final : public PortHost {
     if (flown) change_(flown->trace);
     return flown;
   }
+  Result<LiveFlight> fly_live(const LivePlan&, const LiveWatch&) override {
+    return fail("no live flights");
+  }
   std::optional<PortFault> drive(const ModuleUnderTest&, Trace&) override { return std::nullopt; }
   Result<StepTimes> time_steps(const ModuleUnderTest&, const Trace&, bool) override {
     return fail("no times");

@@ -176,6 +176,9 @@ class OfAnyProfile final : public PortHost {
     return host_.drive({law_of_log, subject.module}, trace);
   }
   Result<Flown> fly(const FlightPlan& plan) override { return host_.fly(plan); }
+  Result<LiveFlight> fly_live(const LivePlan&, const LiveWatch&) override {
+    return fail("no live flights");
+  }
   Result<StepTimes> time_steps(const ModuleUnderTest& wanted, const Trace& inputs,
                                bool with_stack) override {
     return host_.time_steps(wanted, inputs, with_stack);

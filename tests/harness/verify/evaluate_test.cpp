@@ -100,6 +100,9 @@ class Reciting final : public PortHost {
     return std::nullopt;
   }
   Result<Flown> fly(const FlightPlan&) override { return fail("no flights"); }
+  Result<LiveFlight> fly_live(const LivePlan&, const LiveWatch&) override {
+    return fail("no live flights");
+  }
   Result<StepTimes> time_steps(const ModuleUnderTest&, const Trace&, bool) override {
     return fail("no times");
   }
@@ -157,6 +160,9 @@ class UnsupportedLater final : public PortHost {
     return PortFault{PortFault::Kind::unsupported, 12, "step at tick 12 ..."};
   }
   Result<Flown> fly(const FlightPlan& plan) override { return host_->fly(plan); }
+  Result<LiveFlight> fly_live(const LivePlan&, const LiveWatch&) override {
+    return fail("no live flights");
+  }
   Result<StepTimes> time_steps(const ModuleUnderTest& wanted, const Trace& inputs,
                                bool with_stack) override {
     return host_->time_steps(wanted, inputs, with_stack);

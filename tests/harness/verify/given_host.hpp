@@ -28,6 +28,9 @@ class GivenHost final : public PortHost {
     return answers_.drive(subject, trace);
   }
   Result<Flown> fly(const FlightPlan& plan) override { return answers_.fly(plan); }
+  Result<LiveFlight> fly_live(const LivePlan&, const LiveWatch&) override {
+    return fail("no live flights");
+  }
   Result<StepTimes> time_steps(const ModuleUnderTest& subject, const Trace& inputs,
                                bool with_stack) override {
     return answers_.time_steps(subject, inputs, with_stack);
