@@ -16,9 +16,8 @@
 #include "harness/core/interrupt.hpp"
 #include "harness/process/program.hpp"
 #include "harness/realtime/load.hpp"
-#include "harness/report/html/stress_page.hpp"
 #include "harness/report/junit.hpp"
-#include "harness/report/stress_text.hpp"
+#include "harness/report/stress_document.hpp"
 
 namespace attest::cli {
 namespace {
@@ -177,12 +176,16 @@ Result<void> run_all(const StressPlan& plan, const StressOptions& options, const
     auto results = run_stress(task, plan.host, interrupted, progress);
     if (!results) return tl::unexpected(results.error());
     line.erase();
-    if (run.results.empty() && !globals.quiet)
-      fmt::print("{}{}", render_privileges(results->front().privileges), exchange_note(run.port));
+    if (run.results.empty() && !globals.quiet) {
+      for (const auto& [name, value] : privileges_of(results->front())) {
+        if (!value.empty()) fmt::print("{}: {}\n", name, value);
+      }
+      fmt::print("{}", exchange_note(run.port));
+    }
     for (StressResult& stress : *results) {
       stress.cyclictest = judge;
       const bool shown = !globals.quiet || stress.result.verdict != Verdict::pass;
-      if (shown) fmt::print("{}", render_stress(stress, style));
+      if (shown) fmt::print("{}", text_of(result_table(stress), style));
       run.results.push_back(std::move(stress));
     }
     std::fflush(stdout);
@@ -222,13 +225,14 @@ int stress_command(const StressOptions& options, const Globals& globals) {
   if (auto same = check_port(plan->host); !same) return report_error(same.error());
   const RunResult all = run_of(run);
   const auto has_flown = [](const StressResult& stress) { return stress.deadlines > 0; };
+  const Document document = stress_document(run);
   // Without a flight, a page of an earlier run is kept.
   const bool has_page = std::ranges::any_of(run.results, has_flown);
   for (const auto& written : {json->commit(stress_json(run)), junit->commit(junit_report(all)),
-                              has_page ? html->commit(stress_page(run)) : Result<void>()}) {
+                              has_page ? html->commit(html_page(document)) : Result<void>()}) {
     if (!written) return report_error(written.error());
   }
-  if (!globals.quiet) fmt::print("{}", render_stress_end(run, terminal_style(stdout)));
+  if (!globals.quiet) fmt::print("{}", text_of(document.head, terminal_style(stdout)));
   if (run.interrupted) return exit_interrupted;
   if (all.failed()) return exit_failed;
   if (const auto missing = rates_not_judged(run); !missing.empty()) {

@@ -17,9 +17,8 @@
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/interrupt.hpp"
-#include "harness/report/html/sweep_page.hpp"
 #include "harness/report/progress.hpp"
-#include "harness/report/sweep_summary_text.hpp"
+#include "harness/report/sweep_document.hpp"
 #include "harness/sweep/early_stop.hpp"
 #include "harness/sweep/keep_flights.hpp"
 #include "harness/sweep/merge_shards.hpp"
@@ -121,14 +120,12 @@ Result<SweepSummary> report(const PreparedSweep& sweep, const SweepOptions& opti
                  AtomicFile::Special::replaced);
   if (!written) return tl::unexpected(written.error());
   const fs::path shown = worst.empty() ? fs::path() : kept;
+  const Document document =
+      sweep_document({sweep.sampler, columns, *data, summary, sweep.identity, shown});
   if (!options.html.empty()) {
-    const std::string page =
-        sweep_page({sweep.sampler, columns, *data, summary, sweep.identity, shown});
-    if (auto done = html.commit(page); !done) return tl::unexpected(done.error());
+    if (auto done = html.commit(html_page(document)); !done) return tl::unexpected(done.error());
   }
-  if (!quiet) {
-    fmt::print("{}", render_sweep(sweep.sampler, columns, summary, sweep.identity.port, shown));
-  }
+  if (!quiet) fmt::print("{}", text_of(document, terminal_style(stdout)));
   return summary;
 }
 

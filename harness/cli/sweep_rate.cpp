@@ -13,9 +13,8 @@
 #include "harness/measure/rate_sweep.hpp"
 #include "harness/plant/vehicle_models.hpp"
 #include "harness/report/failure_text.hpp"
-#include "harness/report/html/rate_sweep_page.hpp"
 #include "harness/report/progress.hpp"
-#include "harness/report/rate_sweep_text.hpp"
+#include "harness/report/rate_sweep_document.hpp"
 
 namespace attest::cli {
 namespace {
@@ -118,26 +117,19 @@ int sweep_rate_command(const RateSweepOptions& options, const Globals& globals) 
     return report_error({"the port did not fly: " + reason_text(outcome.results.front().result)});
   }
 
-  const std::vector<RateSweepRow> rows = rate_sweep_rows(outcome.results);
-  if (auto written = csv->commit(rate_sweep_csv(rows, plan->rates)); !written) {
+  const RateSweepRun run{options.host.port, plan->port, plan->the_case, plan->rates,
+                         outcome.results};
+  const Document document = rate_sweep_document(run);
+  if (auto written = csv->commit(rate_sweep_csv(run)); !written) {
     return report_error(written.error());
   }
   if (!options.html.empty()) {
-    const RateSweepRun run{options.host.port, plan->port, plan->the_case, plan->rates,
-                           outcome.results};
-    if (auto written = html->commit(rate_sweep_page(run)); !written) {
+    if (auto written = html->commit(html_page(document)); !written) {
       return report_error(written.error());
     }
   }
-  if (!globals.quiet) {
-    fmt::print(
-        "{}: lowest loop rate, and largest delay of the motor commands, within its bounds\n"
-        "{}",
-        plan->the_case.id(), render_rate_sweep(rows, plan->rates));
-  }
-  const bool failed = std::any_of(rows.begin(), rows.end(),
-                                  [](const RateSweepRow& row) { return !row.failure.empty(); });
-  return failed ? exit_failed : exit_ok;
+  if (!globals.quiet) fmt::print("{}", text_of(document, terminal_style(stdout)));
+  return fails_a_run(document.head.verdict) ? exit_failed : exit_ok;
 }
 
 }  // namespace

@@ -13,9 +13,8 @@
 #include "harness/host/step_timer.hpp"
 #include "harness/measure/vector_times.hpp"
 #include "harness/realtime/instructions.hpp"
-#include "harness/report/html/time_page.hpp"
 #include "harness/report/progress.hpp"
-#include "harness/report/time_text.hpp"
+#include "harness/report/time_document.hpp"
 
 namespace attest::cli {
 namespace {
@@ -94,31 +93,27 @@ Result<CorpusTimes> timed(const TimeCommandOptions& options, const HostOptions& 
   return times;
 }
 
-bool is_wrong(const TimeRun& run) {
-  const auto& vectors = run.times.vectors;
-  return std::any_of(vectors.begin(), vectors.end(),
-                     [](const VectorTimes& vector) { return fails_a_run(vector.result.verdict); });
-}
-
-int report_untimed(const TimeRun& run) {
-  if (is_wrong(run)) {
-    fmt::print("{}", what_went_wrong(run));
-    return exit_failed;
-  }
-  return report_error({"no vector was timed: every selected vector was skipped or unsupported"});
-}
-
-int report(const TimeCommandOptions& options, const TimeRun& run, bool quiet) {
-  const bool over = run.times.steps.over_limit() > run.allowed;
-  const bool failed = over || is_wrong(run);
+int report(const TimeCommandOptions& options, const TimeRun& run, const Document& document,
+           bool quiet) {
+  const bool failed = fails_a_run(document.head.verdict);
   if (quiet && !failed) return exit_ok;
-  fmt::print("{}{}", render_times(run), exchange_note(run.port));
+  fmt::print("{}{}", text_of(document, terminal_style(stdout)), exchange_note(run.port));
   const std::string worst = options.measure.worst.string();
   if (!worst.empty()) {
     fmt::print("the slowest step again: attest replay {} --profile {}\n", worst,
                run.times.with_slowest_step()->result.profile);
   }
   return failed ? exit_failed : exit_ok;
+}
+
+// No vector was timed.
+int report_untimed(const TimeRun& run) {
+  const Document document = time_document(run);
+  if (!fails_a_run(document.head.verdict)) {
+    return report_error({"no vector was timed: every selected vector was skipped or unsupported"});
+  }
+  fmt::print("{}", text_of(document, terminal_style(stdout)));
+  return exit_failed;
 }
 
 int time_command(const TimeCommandOptions& options, const Globals& globals) {
@@ -159,12 +154,13 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
     if (interrupted()) return exit_interrupted;
   }
   if (auto same = check_port(*host); !same) return report_error(same.error());
+  const Document document = time_document(run);
   for (const auto& written :
        {json->commit(time_json(run)),
-        options.html.empty() ? Result<void>() : html->commit(time_page(run))}) {
+        options.html.empty() ? Result<void>() : html->commit(html_page(document))}) {
     if (!written) return report_error(written.error());
   }
-  return report(options, run, globals.quiet);
+  return report(options, run, document, globals.quiet);
 }
 
 }  // namespace

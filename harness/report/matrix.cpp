@@ -1,116 +1,107 @@
 #include "harness/report/matrix.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
+#include <string>
 
 #include <fmt/format.h>
+
+#include "harness/report/text.hpp"
 
 namespace attest {
 namespace {
 
-// The gravest verdict has the largest number. The smallest numbers are those of vectors that were
-// not judged: they say less about a group than vectors that passed.
-int severity(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::skip:
-      return 0;
-    case Verdict::unsupported:
-      return 1;
-    case Verdict::pass:
-      return 2;
-    case Verdict::xfail:
-      return 3;
-    case Verdict::xpass:
-      return 4;
-    case Verdict::fail:
-      return 5;
-    case Verdict::non_finite:
-      return 6;
-    case Verdict::protocol:
-      return 7;
-    case Verdict::timeout:
-      return 8;
-    case Verdict::crash:
-      return 9;
+// The gravest verdict is the last one.
+constexpr std::array by_gravity = {
+    Verdict::skip, Verdict::unsupported, Verdict::pass,     Verdict::xfail,   Verdict::xpass,
+    Verdict::fail, Verdict::non_finite,  Verdict::protocol, Verdict::timeout, Verdict::crash};
+static_assert(by_gravity.size() == verdict_count);
+
+Verdict gravest(const std::vector<const VectorResult*>& results) {
+  for (auto verdict = by_gravity.rbegin(); verdict != by_gravity.rend(); ++verdict) {
+    const auto has_it = [&](const VectorResult* result) { return result->verdict == *verdict; };
+    if (std::any_of(results.begin(), results.end(), has_it)) return *verdict;
   }
-  return 0;
+  return by_gravity.front();
 }
 
-MatrixCell cell_of(const VectorResult& result) {
-  MatrixCell cell;
-  cell.worst = result.verdict;
-  if (fails_a_run(result.verdict)) {
-    cell.failed = 1;
-  } else if (result.verdict != Verdict::pass) {
-    cell.apart = 1;
-  } else {
-    cell.passed = 1;
-    const bool differs = result.tightest && std::isfinite(result.tightest->ratio);
-    if (differs) cell.headroom = result.tightest->ratio;
+// The smallest headroom of the results, in small type.
+std::string headroom_text(const std::vector<const VectorResult*>& results) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const VectorResult* result : results) {
+    if (result->verdict != Verdict::pass || !result->tightest) continue;
+    smallest = std::min(smallest, result->tightest->ratio);
   }
-  return cell;
+  return std::isfinite(smallest) ? fmt::format("{:.2g}\u00d7", smallest) : "";
 }
 
-std::vector<LoopRate> rates_of(const RunResult& run) {
-  std::vector<LoopRate> rates = run.rates;
-  for (const VectorResult& result : run.results) rates.push_back(result.rate);
-  std::sort(rates.begin(), rates.end());
-  rates.erase(std::unique(rates.begin(), rates.end()), rates.end());
-  return rates;
+// The cell of the results of a profile for which `wanted` is true.
+template <typename Wanted>
+Cell cell_of(const std::vector<const VectorResult*>& all, Wanted wanted) {
+  std::vector<const VectorResult*> results;
+  std::size_t passed = 0, failed = 0;
+  for (const VectorResult* result : all) {
+    if (!wanted(*result)) continue;
+    results.push_back(result);
+    passed += result->verdict == Verdict::pass ? 1 : 0;
+    failed += fails_a_run(result->verdict) ? 1 : 0;
+  }
+  if (results.empty()) return "-";
+  const std::size_t apart = results.size() - passed - failed;
+  return {fmt::format("{}{}{}", passed, failed > 0 ? fmt::format("/{}", passed + failed) : "",
+                      apart > 0 ? fmt::format("+{}", apart) : ""),
+          gravest(results), headroom_text(results)};
 }
 
-MatrixRow& row_of(const VectorResult& result, Matrix& matrix) {
-  const auto found =
-      std::find_if(matrix.rows.begin(), matrix.rows.end(), [&](const MatrixRow& row) {
-        return row.profile == result.profile && row.group == result.group;
-      });
-  if (found != matrix.rows.end()) return *found;
-  return matrix.rows.emplace_back(
-      MatrixRow{result.profile, result.group, std::vector<MatrixCell>(matrix.rates.size()), {}});
+DocumentTable matrix_of(const std::vector<const VectorResult*>& results) {
+  std::set<LoopRate> rates;
+  std::vector<std::string> groups;
+  for (const VectorResult* result : results) {
+    rates.insert(result->rate);
+    const bool is_known = std::find(groups.begin(), groups.end(), result->group) != groups.end();
+    if (!is_known) groups.push_back(result->group);
+  }
+  DocumentTable table{one_line(results.front()->profile) + ": vectors by group and rate [Hz]",
+                      {"group"}};
+  for (const LoopRate& rate : rates) table.header.push_back(rate.to_string());
+  table.header.emplace_back("total");
+  const auto add_row = [&](const std::string& name, auto is_in_row) {
+    std::vector<Cell> row = {name};
+    for (const LoopRate& rate : rates) {
+      row.push_back(cell_of(results, [&](const VectorResult& result) {
+        return is_in_row(result) && result.rate == rate;
+      }));
+    }
+    row.push_back(cell_of(results, is_in_row));
+    table.rows.push_back(std::move(row));
+  };
+  for (const std::string& group : groups) {
+    add_row(group, [&](const VectorResult& result) { return result.group == group; });
+  }
+  add_row("total", [](const VectorResult&) { return true; });
+  return table;
 }
 
 }  // namespace
 
-MatrixCell& MatrixCell::operator+=(const MatrixCell& other) {
-  passed += other.passed;
-  failed += other.failed;
-  apart += other.apart;
-  const bool is_worse = other.worst && (!worst || severity(*other.worst) > severity(*worst));
-  if (is_worse) worst = other.worst;
-  const bool is_tighter = other.headroom && (!headroom || *other.headroom < *headroom);
-  if (is_tighter) headroom = other.headroom;
-  return *this;
-}
-
-std::string text_of(const MatrixCell& cell) {
-  if (cell.all() == 0) return "-";
-  std::string out = fmt::to_string(cell.passed);
-  if (cell.failed > 0) out += fmt::format("/{}", cell.passed + cell.failed);
-  if (cell.apart > 0) out += fmt::format("+{}", cell.apart);
-  return out;
-}
-
-Matrix matrix_of(const RunResult& run) {
-  Matrix matrix;
-  matrix.rates = rates_of(run);
+std::vector<DocumentTable> matrices_of(const RunResult& run) {
+  std::vector<std::vector<const VectorResult*>> profiles;
   for (const VectorResult& result : run.results) {
-    const auto rate = std::lower_bound(matrix.rates.begin(), matrix.rates.end(), result.rate);
-    MatrixRow& row = row_of(result, matrix);
-    const MatrixCell cell = cell_of(result);
-    row.cells[static_cast<std::size_t>(rate - matrix.rates.begin())] += cell;
-    row.total += cell;
+    const auto same = std::find_if(profiles.begin(), profiles.end(), [&](const auto& profile) {
+      return profile.front()->profile == result.profile;
+    });
+    if (same != profiles.end())
+      same->push_back(&result);
+    else
+      profiles.push_back({&result});
   }
-  return matrix;
-}
-
-MatrixRow total_of(const Matrix& matrix, const std::optional<std::string>& profile) {
-  MatrixRow sum{profile.value_or(""), "total", std::vector<MatrixCell>(matrix.rates.size()), {}};
-  for (const MatrixRow& row : matrix.rows) {
-    if (profile && row.profile != *profile) continue;
-    for (std::size_t i = 0; i < row.cells.size(); ++i) sum.cells[i] += row.cells[i];
-    sum.total += row.total;
-  }
-  return sum;
+  std::stable_partition(profiles.begin(), profiles.end(),
+                        [](const auto& profile) { return fails_a_run(gravest(profile)); });
+  std::vector<DocumentTable> tables;
+  for (const auto& profile : profiles) tables.push_back(matrix_of(profile));
+  return tables;
 }
 
 }  // namespace attest

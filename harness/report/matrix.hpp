@@ -1,45 +1,27 @@
-// The results of a run by group and rate. The terminal and the HTML page show it as a table.
+// The results of a run by group and rate, as tables for the terminal and the HTML page.
 #pragma once
 
-#include <cstddef>
-#include <optional>
-#include <string>
 #include <vector>
 
+#include "harness/report/document.hpp"
 #include "harness/verify/run_result.hpp"
 
 namespace attest {
 
-// The results of a group at a rate.
-struct MatrixCell {
-  std::size_t passed = 0;
-  std::size_t failed = 0;
-  std::size_t apart = 0;           // unsupported, skip, xfail
-  std::optional<Verdict> worst;    // the gravest verdict (matrix.cpp); empty: no result
-  std::optional<double> headroom;  // the smallest; empty: no passed vector differs in bits
-
-  std::size_t all() const { return passed + failed + apart; }
-  MatrixCell& operator+=(const MatrixCell& other);
-};
-
-// "12": all 12 passed; "10/12": two of 12 failed; "5+1": five passed and one was counted apart;
-// "-": no result.
-std::string text_of(const MatrixCell& cell);
-
-struct MatrixRow {
-  std::string profile, group;
-  std::vector<MatrixCell> cells;  // one per rate
-  MatrixCell total;
-};
-
-struct Matrix {
-  std::vector<LoopRate> rates;  // ascending
-  std::vector<MatrixRow> rows;  // in the order of the results
-};
-
-Matrix matrix_of(const RunResult& run);
-
-// The sum of all rows, or of those of one profile. The group of the sum is "total".
-MatrixRow total_of(const Matrix& matrix, const std::optional<std::string>& profile = {});
+// A table for each profile; profiles with a failure come first. It has a row for each group, and a
+// last row with the sums; a column for each rate at which the profile has results, ascending, and a
+// last column with the sums. A cell has the number of vectors that passed:
+//
+//     px4-v1.5.5: vectors by group and rate [Hz]
+//       group       100    250  1000/3    total
+//       attitude     12  10/12       -    22/24
+//       mixed       5+1      6       6     17+1
+//       total      17+1  16/18       6  39/42+1
+//
+// "10/12": two of twelve failed; "5+1": one more was counted apart (unsupported, skip, xfail); "-":
+// no result. The verdict of a cell is the gravest one; vectors that were not judged count less than
+// those that passed. `small` is the smallest headroom, as in "3.1×"; empty: no passed vector
+// differs in bits.
+std::vector<DocumentTable> matrices_of(const RunResult& run);
 
 }  // namespace attest

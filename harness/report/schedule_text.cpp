@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "harness/core/response_time.hpp"
+#include "harness/report/document.hpp"
 #include "harness/report/failure_text.hpp"
-#include "harness/report/stress_text.hpp"
 #include "harness/report/text.hpp"
 
 namespace attest {

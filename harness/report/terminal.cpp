@@ -15,9 +15,10 @@
 
 #include "harness/report/conclusion.hpp"
 #include "harness/report/diagnosis_text.hpp"
+#include "harness/report/document.hpp"
 #include "harness/report/failure_text.hpp"
+#include "harness/report/matrix.hpp"
 #include "harness/report/statement.hpp"
-#include "harness/report/summary_table.hpp"
 #include "harness/report/text.hpp"
 
 namespace attest {
@@ -217,6 +218,18 @@ std::string errors(const RunResult& run, TerminalStyle style) {
   return out.empty() ? out : out + "\n";
 }
 
+std::string matrices(const RunResult& run, TerminalStyle style) {
+  std::string out;
+  for (DocumentTable& table : matrices_of(run)) {
+    for (std::vector<Cell>& row : table.rows) {
+      for (Cell& cell : row) cell.small.clear();
+    }
+    out += text_of(table, style) + "\n";
+  }
+  const bool is_plain = run.count(Verdict::pass) == run.results.size();
+  return is_plain ? out : out + "n/m: n of m vectors passed; +k: k counted apart\n\n";
+}
+
 Colour colour_of(Conclusion conclusion) {
   switch (conclusion) {
     case Conclusion::pass:
@@ -278,7 +291,7 @@ std::string render_summary(const RunResult& run, double wall_s, TerminalStyle st
   if (const std::string stages = first_stages(run); !stages.empty()) out += stages + "\n";
   out += conformance(run) + "\n";
   out += errors(run, style);
-  if (const std::string table = render_table(run, style); !table.empty()) out += table + "\n";
+  out += matrices(run, style);
   out += failures(run, style, shown);
   out += counted_apart(run);
   out += headroom(run);

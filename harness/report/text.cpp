@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace attest {
 namespace {
@@ -63,16 +64,21 @@ std::string broken_line(std::size_t width, std::string_view line) {
 
 }  // namespace
 
-std::string broken_at(int width, std::string_view text) {
-  if (width <= 0) return std::string(text);
-  std::string out;
+std::vector<std::string> lines_of(std::string_view text) {
+  std::vector<std::string> lines;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    out += broken_line(static_cast<std::size_t>(width), text.substr(0, end));
-    if (end < text.size()) out += '\n';
+    lines.emplace_back(text.substr(0, end));
     text.remove_prefix(std::min(end + 1, text.size()));
   }
-  return out;
+  return lines;
+}
+
+std::string broken_at(int width, std::string_view text) {
+  if (width <= 0) return std::string(text);
+  std::vector<std::string> lines = lines_of(text);
+  for (std::string& line : lines) line = broken_line(static_cast<std::size_t>(width), line);
+  return fmt::format("{}{}", fmt::join(lines, "\n"), text.ends_with('\n') ? "\n" : "");
 }
 
 std::string one_line(std::string_view text) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "harness/core/printable.hpp"
 
@@ -19,6 +20,8 @@ std::string broken_at(int width, std::string_view text);
 // As printable(), and on one line: each run of newlines, tabs and spaces becomes one space. Removes
 // white space at both ends.
 std::string one_line(std::string_view text);
+
+std::vector<std::string> lines_of(std::string_view text);
 
 // One word of a POSIX shell. shell_word() adds quotes only if the text is empty or has a special
 // character; shell_quoted() always adds them.

@@ -9,7 +9,6 @@ ATTEST_EMBED(page_script, ATTEST_PAGE_SCRIPT);
 ATTEST_EMBED(details_script, ATTEST_DETAILS_SCRIPT);
 ATTEST_EMBED(plots_script, ATTEST_PLOTS_SCRIPT);
 ATTEST_EMBED(shared_script, ATTEST_SHARED_SCRIPT);
-ATTEST_EMBED(plot_page_template, ATTEST_PLOT_PAGE_TEMPLATE);
 ATTEST_EMBED(plot_page_script, ATTEST_PLOT_PAGE_SCRIPT);
 ATTEST_EMBED(replay_script, ATTEST_REPLAY_SCRIPT);
 ATTEST_EMBED(dygraphs_script, ATTEST_DYGRAPHS_SCRIPT);
@@ -34,7 +33,6 @@ std::string_view page_script() { return ATTEST_EMBEDDED(page_script); }
 std::string_view details_script() { return ATTEST_EMBEDDED(details_script); }
 std::string_view plots_script() { return ATTEST_EMBEDDED(plots_script); }
 std::string_view shared_script() { return ATTEST_EMBEDDED(shared_script); }
-std::string_view plot_page_template() { return ATTEST_EMBEDDED(plot_page_template); }
 std::string_view plot_page_script() { return ATTEST_EMBEDDED(plot_page_script); }
 std::string_view replay_script() { return ATTEST_EMBEDDED(replay_script); }
 std::string_view dygraphs_script() { return without_source_map(ATTEST_EMBEDDED(dygraphs_script)); }

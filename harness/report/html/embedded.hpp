@@ -5,7 +5,7 @@
 
 namespace attest {
 
-// The page of `run --html`: its template (mustache), its styles and its scripts.
+// The template (mustache) and the styles of all pages, and the scripts of the page of `run --html`.
 std::string_view page_template();
 std::string_view page_style();
 std::string_view results_style();
@@ -14,8 +14,7 @@ std::string_view details_script();
 std::string_view plots_script();
 std::string_view shared_script();
 
-// The page of a PlotPage, and its scripts.
-std::string_view plot_page_template();
+// The scripts of all other pages.
 std::string_view plot_page_script();
 std::string_view replay_script();
 

@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "harness/report/document.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/html/flight_plots.hpp"
-#include "harness/report/html/plot_page.hpp"
 
 namespace attest {
 namespace {
@@ -21,19 +21,19 @@ std::string plant_of(const SimulatedFlight& flight) {
 
 // A flight in which the port fails may have no metrics, so the rows are those of the flight with
 // the most metrics.
-PageTable metrics_table(const std::vector<SimulatedFlight>& flights) {
+DocumentTable metrics_table(const std::vector<SimulatedFlight>& flights) {
   const auto most = std::max_element(flights.begin(), flights.end(),
                                      [](const SimulatedFlight& a, const SimulatedFlight& b) {
                                        return a.result.metrics.size() < b.result.metrics.size();
                                      });
-  PageTable table{"Metrics of the flight", {"metric"}};
+  DocumentTable table{"Metrics of the flight", {"metric"}};
   for (const SimulatedFlight& flight : flights) {
     table.header.push_back(flights.size() > 1 ? plant_of(flight) : "value");
   }
   table.header.push_back("bounds");
   for (std::size_t i = 0; i < most->result.metrics.size(); ++i) {
     const MetricResult& metric = most->result.metrics[i];
-    std::vector<PageCell> row = {{metric.name, std::nullopt, std::string(name_of(metric.measure))}};
+    std::vector<Cell> row = {{metric.name, std::nullopt, std::string(name_of(metric.measure))}};
     bool all_within = true;
     for (const SimulatedFlight& flight : flights) {
       const auto& metrics = flight.result.metrics;
@@ -48,8 +48,8 @@ PageTable metrics_table(const std::vector<SimulatedFlight>& flights) {
   return table;
 }
 
-PageConclusion page_conclusion(const std::vector<SimulatedFlight>& flights,
-                               const Declarations& port) {
+DocumentHead page_conclusion(const std::vector<SimulatedFlight>& flights,
+                             const Declarations& port) {
   const auto failed = std::find_if(
       flights.begin(), flights.end(),
       [](const SimulatedFlight& flight) { return flight.result.verdict != Verdict::pass; });
@@ -63,8 +63,8 @@ PageConclusion page_conclusion(const std::vector<SimulatedFlight>& flights,
 }  // namespace
 
 std::string flight_page(const std::vector<SimulatedFlight>& flights, const Declarations& port) {
-  PlotPage page;
-  page.conclusion = page_conclusion(flights, port);
+  Document page;
+  page.head = page_conclusion(flights, port);
   page.tables = {metrics_table(flights)};
   if (page.tables.front().rows.empty()) page.tables.clear();
   std::vector<NamedFlight> flown;
@@ -80,7 +80,7 @@ std::string flight_page(const std::vector<SimulatedFlight>& flights, const Decla
     page.groups = {flight_plots(flown)};
     page.replay = replay_of(flown);
   }
-  return plot_page(page);
+  return html_page(page);
 }
 
 }  // namespace attest

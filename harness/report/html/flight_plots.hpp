@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "harness/loop/flight.hpp"
-#include "harness/report/html/plot_page.hpp"
+#include "harness/report/document.hpp"
 
 namespace attest {
 

@@ -37,8 +37,6 @@ PlotSeries series_of(const NamedHistogram& histogram, int first, int last) {
 
 }  // namespace
 
-double microseconds(Nanoseconds time) { return static_cast<double>(time.count()) / 1000; }
-
 Plot histogram_plot(std::string title, const std::vector<NamedHistogram>& histograms,
                     std::vector<PlotMark> marks) {
   Plot plot{std::move(title), "% of the samples"};

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "harness/core/histogram.hpp"
-#include "harness/report/html/plot_page.hpp"
+#include "harness/report/document.hpp"
 
 namespace attest {
 
@@ -13,8 +13,6 @@ struct NamedHistogram {
   std::string name;
   std::vector<Histogram::Bucket> buckets;
 };
-
-double microseconds(Nanoseconds time);
 
 // The share of the samples [%] of each histogram, as bars over the time [us]. A factor of ten has
 // 20 bars of equal width on the logarithmic axis. Both axes are logarithmic, so that a single slow

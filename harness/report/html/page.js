@@ -16,7 +16,7 @@
     for (const cell of tableRow.cells) row[columns[i++]] = cell.textContent.trim();
     row.symbol = symbols[row.verdict];
     row.id = `${row.group}/${row.name}@${row.configuration}`;
-    row.rate = row.configuration.split('-')[0];
+    row.rate = row.configuration.match(/^.*?hz/)[0];
     row.isFlight = row.configuration !== row.rate;
     return row;
   };
@@ -55,7 +55,7 @@
       ...values.map((value) => option(value, value))
     );
   const hertz = (rate) => {
-    const [above, below] = rate.replace('hz', '').split('_').map(Number);
+    const [above, below] = rate.replace('hz', '').split('-').pop().split('_').map(Number);
     return above / (below || 1);
   };
   const groups = selector(
@@ -142,6 +142,22 @@
     if (isRendered) list.setAttribute('aria-activedescendant', `row-${position}`);
     else list.removeAttribute('aria-activedescendant');
   };
+
+  // Each cell of a matrix with a verdict selects results: of a group, or of all groups in the last
+  // row; at a rate, or at all rates in the last column.
+  for (const matrix of document.querySelectorAll('.matrix')) {
+    const profile = matrix.caption.textContent.split(':')[0];
+    const rates = [...matrix.tHead.rows[0].cells].map((cell) => cell.textContent);
+    const matrixRows = [...matrix.tBodies[0].rows];
+    for (const cell of matrix.querySelectorAll('td[class*="v-"]')) {
+      const group = cell.parentElement.cells[0].textContent;
+      const isTotal = cell.parentElement === matrixRows.at(-1);
+      const rate = cell.cellIndex === rates.length - 1 ? '' : rates[cell.cellIndex];
+      cell.dataset.group = isTotal ? profile : `${profile}/${group}`;
+      cell.dataset.rate = rate && `${rate.replace('/', '_').replace(':', '-')}hz`;
+      cell.dataset.verdict = cell.className.match(/v-(\S+)/)[1];
+    }
+  }
 
   const markCells = () => {
     for (const cell of document.querySelectorAll('.matrix td[data-group]')) {

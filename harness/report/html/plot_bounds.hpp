@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "harness/report/html/plot_page.hpp"
+#include "harness/report/document.hpp"
 
 namespace attest {
 

@@ -134,7 +134,7 @@ json vehicle_to_json(const ReplayVehicle& vehicle) {
 
 }  // namespace
 
-std::string plot_data_json(const PlotPage& page) {
+std::string plot_data_json(const Document& page) {
   json groups = json::array(), replay = json::array();
   for (const PlotGroup& group : page.groups) {
     json plots = json::array();

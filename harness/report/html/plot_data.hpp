@@ -1,9 +1,9 @@
-// The plots of a PlotPage as JSON, for its scripts.
+// The plots of a Document as JSON, for its scripts.
 #pragma once
 
 #include <string>
 
-#include "harness/report/html/plot_page.hpp"
+#include "harness/report/document.hpp"
 
 namespace attest {
 
@@ -17,6 +17,6 @@ namespace attest {
 //
 // The texts "..." in grids, y, low, high and the replay are base64 of float32. `grid` is an index
 // into the grids, the x values at which something is drawn. `<` is escaped.
-std::string plot_data_json(const PlotPage& page);
+std::string plot_data_json(const Document& page);
 
 }  // namespace attest

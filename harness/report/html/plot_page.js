@@ -1,4 +1,4 @@
-// The plots of a PlotPage. The animation moves and follows the cursor through `attest.plotGroups`.
+// The plots of a document. The animation moves and follows the cursor through `attest.plotGroups`.
 'use strict';
 (() => {
   const {element, floats, colour, nearest, shown, styledAxes} = attest;

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/report/document.hpp"
 #include "harness/report/failure_text.hpp"
-#include "harness/report/html/plot_page.hpp"
 #include "harness/report/text.hpp"
 #include "harness/trace/output_topics.hpp"
 
@@ -86,7 +86,7 @@ void add_pair(const TimedSignal& got, const TimedSignal& want, const SecondsOf& 
   group.plots.push_back(std::move(difference));
 }
 
-std::vector<PageCell> row_of(const SignalComparison& signal) {
+std::vector<Cell> row_of(const SignalComparison& signal) {
   const auto value = [](const std::optional<SignalPair>& pair) {
     return pair ? fmt::format("{:.4g}", std::abs(pair->got - pair->want)) : std::string();
   };
@@ -102,9 +102,9 @@ std::vector<PageCell> row_of(const SignalComparison& signal) {
 }
 
 // Signals that differ come first.
-PageTable table_of(const SignalsComparison& comparison) {
-  PageTable table{"Signals that both have",
-                  {"signal", "", "samples", "deviating", "first [us]", "largest difference"}};
+DocumentTable table_of(const SignalsComparison& comparison) {
+  DocumentTable table{"Signals that both have",
+                      {"signal", "", "samples", "deviating", "first [us]", "largest difference"}};
   for (const bool agrees : {false, true}) {
     for (const SignalComparison& signal : comparison.signals) {
       if (signal.agrees() == agrees) table.rows.push_back(row_of(signal));
@@ -159,16 +159,16 @@ std::string deviation_text(const std::optional<Deviation>& deviation) {
                      value_text(channel, deviation->got), value_text(channel, deviation->want));
 }
 
-std::vector<PageCell> row_of(const TopicAgreement& topic, const LoggedOutput& logged,
-                             const LogLimits& limits) {
+std::vector<Cell> row_of(const TopicAgreement& topic, const LoggedOutput& logged,
+                         const LogLimits& limits) {
   const auto part = [&](std::size_t count) {
     const double all = static_cast<double>(std::max<std::size_t>(topic.paired, 1));
     return fmt::format("{:.1f}%", 100 * static_cast<double>(count) / all);
   };
-  const PageCell verdict = topic.not_judged.empty()
-                               ? PageCell(topic.agrees(limits) ? "agrees" : "differs",
-                                          topic.agrees(limits) ? Verdict::pass : Verdict::fail)
-                               : PageCell("not judged");
+  const Cell verdict = topic.not_judged.empty()
+                           ? Cell(topic.agrees(limits) ? "agrees" : "differs",
+                                  topic.agrees(limits) ? Verdict::pass : Verdict::fail)
+                           : Cell("not judged");
   return {std::string(topic.topic),
           verdict,
           fmt::format("{} of {}", topic.paired, logged.samples),
@@ -181,10 +181,11 @@ std::vector<PageCell> row_of(const TopicAgreement& topic, const LoggedOutput& lo
           part(topic.unexplained())};
 }
 
-PageTable table_of(const LoggedUnit& unit, const LogResult& result, const LogLimits& limits) {
-  PageTable table{fmt::format("How far the port is from the log: {}", info_of(unit.module).title),
-                  {"topic", "", "paired", "median", "90%", "99%", "largest", "within",
-                   "between samples", "not explained"}};
+DocumentTable table_of(const LoggedUnit& unit, const LogResult& result, const LogLimits& limits) {
+  DocumentTable table{
+      fmt::format("How far the port is from the log: {}", info_of(unit.module).title),
+      {"topic", "", "paired", "median", "90%", "99%", "largest", "within", "between samples",
+       "not explained"}};
   for (std::size_t i = 0; i < result.topics.size(); ++i) {
     table.rows.push_back(row_of(result.topics[i], unit.outputs[i], limits));
   }
@@ -208,7 +209,7 @@ std::string signals_page(const std::vector<TimedSignals>& sources,
                          const std::vector<std::string>& names) {
   std::vector<const TimedSignals*> all;
   std::vector<std::string> files;
-  PlotPage page;
+  Document page;
   for (const TimedSignals& source : sources) {
     all.push_back(&source);
     files.push_back(source.source);
@@ -216,7 +217,7 @@ std::string signals_page(const std::vector<TimedSignals>& sources,
       page.notes.push_back({source.source + ": " + note});
   }
   const SecondsOf clock(all);
-  page.conclusion = {Verdict::pass, "plots", joined(files), counted(names.size(), "signal")};
+  page.head = {Verdict::pass, "plots", joined(files), counted(names.size(), "signal")};
   PlotGroup group{"", time_label, {}};
   for (const std::string& name : names) {
     Plot plot{name, unit_of_signal(name)};
@@ -229,18 +230,18 @@ std::string signals_page(const std::vector<TimedSignals>& sources,
     group.plots.push_back(std::move(plot));
   }
   page.groups = {std::move(group)};
-  return plot_page(page);
+  return html_page(page);
 }
 
 std::string comparison_page(const SignalsComparison& comparison, const TimedSignals& got,
                             const TimedSignals& want, std::int64_t shift_us) {
-  PlotPage page;
+  Document page;
   const bool agrees = comparison.agrees();
-  page.conclusion = {agrees ? Verdict::pass : Verdict::fail, agrees ? "agree" : "differ",
-                     got.source + " and " + want.source,
-                     fmt::format("{} of {} common signals agree, {} samples",
-                                 comparison.signals.size() - comparison.deviating_signals(),
-                                 comparison.signals.size(), comparison.compared())};
+  page.head = {agrees ? Verdict::pass : Verdict::fail, agrees ? "agree" : "differ",
+               got.source + " and " + want.source,
+               fmt::format("{} of {} common signals agree, {} samples",
+                           comparison.signals.size() - comparison.deviating_signals(),
+                           comparison.signals.size(), comparison.compared())};
   page.facts = {{"got", got.source},
                 {"want", want.source},
                 {"got was moved earlier by [us]", shift_us == 0 ? "" : fmt::to_string(shift_us)},
@@ -260,12 +261,12 @@ std::string comparison_page(const SignalsComparison& comparison, const TimedSign
     add_pair(*got.find(signal.name), *want.find(signal.name), clock, shift_us, group);
   }
   if (!group.plots.empty()) page.groups = {std::move(group)};
-  return plot_page(page);
+  return html_page(page);
 }
 
 std::string log_page(const FlightLog& log, const std::vector<LogResult>& results,
                      const LogLimits& limits, const std::string& port) {
-  PlotPage page;
+  Document page;
   const Verdict verdict = worst_of(results);
   std::vector<std::string> ticks;
   page.facts = {{"agreement", fmt::format("at least {:g}% of the samples within {:g}, at most "
@@ -286,17 +287,17 @@ std::string log_page(const FlightLog& log, const std::vector<LogResult>& results
     page.groups.push_back(plots_of_outputs(unit.trace, results[i].got, "logged",
                                            fmt::format("Outputs of the {}", title)));
   }
-  page.conclusion = {verdict, std::string(name_of(verdict)), log.units.front().trace.source,
-                     fmt::format("{}, {}, {}", port, log.profile, fmt::join(ticks, " and "))};
+  page.head = {verdict, std::string(name_of(verdict)), log.units.front().trace.source,
+               fmt::format("{}, {}, {}", port, log.profile, fmt::join(ticks, " and "))};
   for (const std::string& note : log.notes) page.notes.push_back({note});
-  return plot_page(page);
+  return html_page(page);
 }
 
 std::string trace_page(const Trace& want, const Trace& got, const VectorResult& result,
                        const std::string& port) {
-  PlotPage page;
-  page.conclusion = {result.verdict, std::string(name_of(result.verdict)), want.source,
-                     fmt::format("{}, {}, {} ticks", port, result.profile, want.samples.size())};
+  Document page;
+  page.head = {result.verdict, std::string(name_of(result.verdict)), want.source,
+               fmt::format("{}, {}, {} ticks", port, result.profile, want.samples.size())};
   if (!result.reason.empty()) page.notes.push_back({result.reason, true});
   page.facts = {{"first deviation", deviation_text(result.first)},
                 {"worst deviation", deviation_text(result.worst)}};
@@ -307,7 +308,7 @@ std::string trace_page(const Trace& want, const Trace& got, const VectorResult& 
     for (Plot& plot : outputs.plots) plot.marks = {{first_s, "first deviation"}};
   }
   if (!outputs.plots.empty()) page.groups = {std::move(outputs)};
-  return plot_page(page);
+  return html_page(page);
 }
 
 }  // namespace attest

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "harness/report/html/plot_page.hpp"
+#include "harness/report/document.hpp"
 #include "harness/sweep/summary.hpp"
 
 namespace attest {

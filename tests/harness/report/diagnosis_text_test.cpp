@@ -51,7 +51,7 @@ TEST(DiagnosisText, EndsWithThePurposeOfTheMostSpecificCase) {
   EXPECT_THAT(junit_report(run, diagnosis), HasSubstr("it tests: A stick beyond &lt;1&gt;."));
   const std::string page = html_report({run, diagnosis, {}});
   EXPECT_THAT(page, HasSubstr("px4-v1.5.5/modes/acro"));
-  EXPECT_THAT(page, HasSubstr("It tests: A stick beyond &lt;1&gt;."));
+  EXPECT_THAT(page, HasSubstr("it tests: A stick beyond &lt;1&gt;."));
   EXPECT_THAT(page, HasSubstr("7 of 9 failing vectors deviate first in the rate law or the"));
   diagnosis.why.clear();  // the caller does not know the case
   EXPECT_THAT(diagnosis_text(diagnosis), Not(HasSubstr("it tests")));

@@ -1,8 +1,8 @@
-#include "harness/report/stress_text.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "harness/report/stress_document.hpp"
+#include "harness/report/text.hpp"
 #include "tests/harness/report/baseline.hpp"
 #include "tests/harness/times.hpp"
 
@@ -56,17 +56,22 @@ StressRun mixed_run() {
   return run;
 }
 
+std::string text_of_result(const StressResult& stress) { return text_of(result_table(stress), {}); }
+
+std::string last_line(const StressRun& run) {
+  return lines_of(text_of(stress_document(run).head, {})).back();
+}
+
 TEST(StressText, NamesNoPercentileThatTheSampleCannotSupport) {
-  const std::string text = render_stress(result(Rate::hz(250), Verdict::pass), {});
-  EXPECT_THAT(text, HasSubstr("  response time            8.06 us   8.06 us         -         -"
-                              "     40 us\n"));
-  EXPECT_THAT(text, HasSubstr("  plant's wake-up          8.06 us   8.06 us   8.06 us     40 us"));
+  const std::string text = text_of_result(result(Rate::hz(250), Verdict::pass));
+  EXPECT_THAT(text, HasSubstr("  response time    8.06 us  8.06 us        -      -  40 us\n"));
+  EXPECT_THAT(text, HasSubstr("  plant's wake-up  8.06 us  8.06 us  8.06 us  40 us  40 us\n"));
 }
 
 TEST(StressText, NamesARhythmOnlyWhereOneWasFound) {
   const StressRun run = mixed_run();
-  EXPECT_THAT(render_stress(run.results[0], {}), Not(HasSubstr("they come every")));
-  EXPECT_THAT(render_stress(run.results[1], {}),
+  EXPECT_THAT(text_of_result(run.results[0]), Not(HasSubstr("they come every")));
+  EXPECT_THAT(text_of_result(run.results[1]),
               HasSubstr("they come every 100 steps, from tick 99 on (chance: below 1e-09)"));
 }
 
@@ -76,13 +81,13 @@ TEST(StressText, ARateThatIsNotJudgedIsNoPassOfTheWhole) {
   EXPECT_THAT(rates_not_judged(run), ElementsAre("1000"));
   run.results.erase(run.results.begin() + 1);
   EXPECT_EQ(verdict_of(run), "partial");
-  EXPECT_EQ(render_stress_end(run, {}),
-            "PARTIAL 1 of 2 rates hold in real time (load: none); not judged: 1000 Hz\n");
+  EXPECT_EQ(last_line(run),
+            "PARTIAL 1 of 2 rates hold in real time (load: none); not judged: 1000 Hz");
   run.results.back().result.verdict = Verdict::unsupported;
   EXPECT_EQ(verdict_of(run), "partial");
   run.results.pop_back();
   EXPECT_EQ(verdict_of(run), "pass");
-  EXPECT_EQ(render_stress_end(run, {}), "PASS 1 of 1 rate hold in real time (load: none)\n");
+  EXPECT_EQ(last_line(run), "PASS 1 of 1 rate hold in real time (load: none)");
   run.interrupted = true;
   EXPECT_EQ(verdict_of(run), "partial");
   run.results.clear();
@@ -104,9 +109,9 @@ StressRun cascade_run() {
 
 TEST(StressText, ARateOfTheCascadeHoldsIfBothUnitsDo) {
   StressRun run = cascade_run();
-  EXPECT_THAT(render_stress(run.results[1], {}),
+  EXPECT_THAT(text_of_result(run.results[1]),
               HasSubstr("hover@250-1000hz-iris-mujoco, attitude unit\n"));
-  EXPECT_EQ(render_stress_end(run, {}), "PASS 1 of 1 rate hold in real time (load: none)\n");
+  EXPECT_EQ(last_line(run), "PASS 1 of 1 rate hold in real time (load: none)");
   run.results[1].result.verdict = Verdict::skip;
   run.results[1].result.reason = "the machine's";
   EXPECT_EQ(verdict_of(run), "none");

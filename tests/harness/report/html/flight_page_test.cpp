@@ -93,7 +93,7 @@ TEST(FlightPage, HasTheVerdictAndTheMetrics) {
   EXPECT_THAT(page, Not(HasSubstr("<b>acme")));
   EXPECT_THAT(page, HasSubstr("levels<br><small>settling_time_s</small></th>"
                               "<td class=\"number\">3.5</td>"
-                              "<td class=\" v-fail\"><b>\u2717</b> missed<br>"
+                              "<td class=\"v-fail\"><b>\u2717</b> missed<br>"
                               "<small>0 to 2</small></td>"));
 }
 
@@ -109,7 +109,7 @@ TEST(FlightPage, TwoPlantsHaveAColumnEachAndTheWorseVerdict) {
   EXPECT_THAT(page, HasSubstr("</span> fail</p>"));
   EXPECT_THAT(page, HasSubstr("<p class=\"error\">ode: levels</p>"));
   EXPECT_THAT(page, HasSubstr("<td class=\"number\">1.5</td><td class=\"number\">3.5</td>"
-                              "<td class=\" v-fail\">"));
+                              "<td class=\"v-fail\">"));
   EXPECT_THAT(page, HasSubstr("\"name\":\"roll (ode)\""));
 }
 

@@ -1,9 +1,9 @@
-#include "harness/report/html/rate_sweep_page.hpp"
-
 #include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "harness/report/rate_sweep_document.hpp"
 
 namespace attest {
 namespace {
@@ -34,9 +34,9 @@ RateSweepRun one_vehicle() {
 }
 
 TEST(SweepPage, ShowsTheLimitsAndWhatIsMissed) {
-  const std::string page = rate_sweep_page(one_vehicle());
+  const std::string page = html_page(rate_sweep_document(one_vehicle()));
   EXPECT_THAT(page, HasSubstr("</span> measured</p>"));
-  EXPECT_THAT(page, HasSubstr(">iris on ode</th><td class=\"number\">30</td>"));
+  EXPECT_THAT(page, HasSubstr(">iris</th><td class=\"\">ode</td><td class=\"number\">30</td>"));
   EXPECT_THAT(page, HasSubstr("<b>\u2717</b> none</td>"));
   EXPECT_THAT(page, HasSubstr("settles (settling_time_s) is inf, allowed: at most 1.5"));
   EXPECT_THAT(page, HasSubstr("\"name\":\"within bounds\""));
@@ -47,7 +47,7 @@ TEST(SweepPage, AFailureOfThePortIsTheConclusion) {
   run.results[1].result.verdict = Verdict::crash;
   run.results[1].result.reason = "the process died";
   run.results[0].trials = {{100, 0, {}, false}};
-  const std::string page = rate_sweep_page(run);
+  const std::string page = html_page(rate_sweep_document(run));
   EXPECT_THAT(page, HasSubstr("</span> fail</p>"));
   EXPECT_THAT(page, HasSubstr("iris on ode: crash: the process died"));
   EXPECT_THAT(page, HasSubstr("the vehicle is lost"));

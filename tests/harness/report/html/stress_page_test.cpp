@@ -1,9 +1,8 @@
-#include "harness/report/html/stress_page.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "harness/report/html/histogram_plot.hpp"
+#include "harness/report/stress_document.hpp"
 #include "tests/harness/times.hpp"
 
 namespace attest {
@@ -64,8 +63,10 @@ StressRun failed_run() {
   return run;
 }
 
+std::string page_of(const StressRun& run) { return html_page(stress_document(run)); }
+
 TEST(StressPage, ShowsTheReasonTheFloorAndTheTimeline) {
-  const std::string page = stress_page(failed_run());
+  const std::string page = page_of(failed_run());
   EXPECT_THAT(page, HasSubstr("</span> fail</p>"));
   EXPECT_THAT(page, HasSubstr("<p class=\"error\">1000 Hz: fail: 1 of 1 deadline misses</p>"));
   EXPECT_THAT(page, HasSubstr("\"name\":\"idle machine\""));
@@ -79,7 +80,7 @@ TEST(StressPage, ARateWithoutATickHasNoPlots) {
   StressRun run = failed_run();
   run.results[0].ticks = 0;
   run.results[0].result.verdict = Verdict::crash;
-  const std::string page = stress_page(run);
+  const std::string page = page_of(run);
   EXPECT_THAT(page, Not(HasSubstr("idle machine")));
   EXPECT_THAT(page, HasSubstr("crash"));
 }

@@ -1,9 +1,9 @@
-// The page of `attest sweep --html`.
+// The report of `attest sweep`.
 #pragma once
 
 #include <filesystem>
-#include <string>
 
+#include "harness/report/document.hpp"
 #include "harness/sweep/flight_sampler.hpp"
 #include "harness/sweep/identity.hpp"
 #include "harness/sweep/summary.hpp"
@@ -19,9 +19,9 @@ struct SweepRun {
   std::filesystem::path kept;  // the folder of keep_flights(); empty: no flight was kept
 };
 
-// Requirements, metrics, differences from the reference, sensitivities and worst flights as tables;
+// Requirements, differences from the reference, metrics, sensitivities and worst flights as tables;
 // distributions, and metrics over dispersions, as plots. The page has a few megabytes, with any
 // number of samples.
-std::string sweep_page(const SweepRun& run);
+Document sweep_document(const SweepRun& run);
 
 }  // namespace attest

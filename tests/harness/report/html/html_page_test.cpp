@@ -1,5 +1,3 @@
-#include "harness/report/html/plot_page.hpp"
-
 #include <bit>
 #include <cstdint>
 #include <limits>
@@ -9,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "harness/report/document.hpp"
 #include "harness/report/html/base64.hpp"
 #include "harness/report/html/plot_data.hpp"
 
@@ -21,7 +20,7 @@ using testing::IsSupersetOf;
 using testing::Not;
 
 nlohmann::json data_of(Plot plot) {
-  PlotPage page;
+  Document page;
   page.groups = {{"", "time [s]", {std::move(plot)}}};
   return nlohmann::json::parse(plot_data_json(page)).at("groups")[0].at("plots")[0];
 }
@@ -85,24 +84,24 @@ TEST(PlotData, ABandHasItsOwnTimes) {
   EXPECT_EQ(data.at("shape"), "steps");
 }
 
-TEST(PlotPage, TablesAlignNumbersAndMarkVerdicts) {
-  PlotPage page;
-  page.conclusion = {Verdict::fail, "differ", "a and b", ""};
+TEST(HtmlPage, TablesAlignNumbersAndMarkVerdicts) {
+  Document page;
+  page.head = {Verdict::fail, "differ", "a and b", ""};
   page.tables = {{"Signals", {"signal", "worst", "note"}, {}}};
   page.tables[0].rows = {{"roll", "-0.5", {"late", Verdict::fail}}, {"pitch", "", "5 is a text?"}};
   page.tables[0].rows.push_back({"yaw", "2", "none"});
-  const std::string text = plot_page(page);
+  const std::string text = html_page(page);
   EXPECT_THAT(text, HasSubstr("<td class=\"number\">-0.5</td>"));
-  EXPECT_THAT(text, HasSubstr("<td class=\" v-fail\"><b>\u2717</b> late</td>"));
+  EXPECT_THAT(text, HasSubstr("<td class=\"v-fail\"><b>\u2717</b> late</td>"));
   EXPECT_THAT(text, HasSubstr("<td class=\"\">5 is a text?</td>"));
   EXPECT_THAT(text, HasSubstr("<th scope=\"row\" class=\"\">roll</th>"));
   EXPECT_THAT(text, HasSubstr("conclusion FAIL"));
 }
 
-TEST(PlotPage, AllTextsAreEscaped) {
+TEST(HtmlPage, AllTextsAreEscaped) {
   const std::string evil = "<img src=x></script>\x1b{{title}}";
-  PlotPage page;
-  page.conclusion = {Verdict::pass, evil, evil, evil};
+  Document page;
+  page.head = {Verdict::pass, evil, evil, evil};
   page.notes = {{evil, true}};
   page.facts = {{evil, evil}, {"empty", ""}};
   page.tables = {{evil, {evil}, {{evil, {evil, Verdict::pass, evil}}}}};
@@ -110,7 +109,7 @@ TEST(PlotPage, AllTextsAreEscaped) {
   plot.series = {{evil, {0}, {std::numeric_limits<float>::quiet_NaN()}}};
   plot.marks = {{0, evil}};
   page.groups = {{evil, evil, {plot}}};
-  const std::string text = plot_page(page);
+  const std::string text = html_page(page);
   EXPECT_THAT(text, Not(HasSubstr("<img")));
   EXPECT_THAT(text, Not(HasSubstr("x></script>")));
   EXPECT_THAT(text, Not(HasSubstr("\x1b")));

@@ -1,4 +1,4 @@
-// Execution times as text and as JSON.
+// The report of `attest time`.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "harness/measure/vector_times.hpp"
+#include "harness/report/document.hpp"
 
 namespace attest {
 
@@ -19,13 +20,13 @@ struct TimeRun {
   std::uint64_t allowed = 0;                // number of steps that may be over the budget
 };
 
+// The step times by module, of the slowest vectors, and by group and rate, compared with the
+// budget; their distribution as a plot. A note for each failing vector: if failing vectors with the
+// same reason follow, one more note has their number. Without a step that was timed, only notes.
+Document time_document(const TimeRun& run);
+
 // REQUIRES: at least one vector was timed.
-std::string render_times(const TimeRun& run);
-
-// A line for each failing vector. If failing vectors with the same reason follow, one more line has
-// their number. Empty if no vector fails.
-std::string what_went_wrong(const TimeRun& run);
-
+//
 // {"schema": "attest-time-1", "attest_version": ..., "port": ..., "repeats": 5, "budget_us": null,
 //  "all": {figures}, "modules": {"rate_unit": {figures}}, "slowest": id, "instructions": [...],
 //  "vectors": [{"id": ..., "module": "rate_unit", figures}, ...]}

@@ -1,4 +1,4 @@
-// A stress run as text: a block per rate and unit, with the idle machine for comparison.
+// The report of `attest stress`.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 #include "harness/host/port_process.hpp"
 #include "harness/measure/stress.hpp"
-#include "harness/report/terminal.hpp"
+#include "harness/report/document.hpp"
 
 namespace attest {
 
@@ -30,16 +30,16 @@ std::string_view verdict_of(const StressRun& run);
 // The rates whose result is neither a pass nor a failure: "1000".
 std::vector<std::string> rates_not_judged(const StressRun& run);
 
-// The text of one result, several lines.
-std::string render_stress(const StressResult& stress, TerminalStyle style);
+// The times of one result, compared with the idle machine; below it, its counts, its outputs and
+// its verdict.
+DocumentTable result_table(const StressResult& stress);
 
 // The privileges that the operating system granted and refused.
-std::string render_privileges(const std::vector<RealtimePrivilege>& privileges);
-// The last line, with the totals.
-std::string render_stress_end(const StressRun& run, TerminalStyle style);
+std::vector<Fact> privileges_of(const StressResult& stress);
 
-// "1000", or "250:1000, attitude unit".
-std::string rate_of(const StressResult& stress);
+// For each rate and unit: verdict and reason, the times as tables and plots, and a timeline of the
+// flight.
+Document stress_document(const StressRun& run);
 
 // A note on the unit of the cascade that the reference flew, because the port has only the other
 // one. Empty: the port flew all units.
@@ -51,8 +51,5 @@ RunResult run_of(const StressRun& run);
 
 // As stress.schema.json describes it.
 std::string stress_json(const StressRun& run);
-
-// "8.13 us", "1.02 ms", "312 ns".
-std::string human_time(Nanoseconds time);
 
 }  // namespace attest

@@ -1,4 +1,4 @@
-#include "harness/report/html/rate_sweep_page.hpp"
+#include "harness/report/rate_sweep_document.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,14 +12,36 @@
 #include "harness/core/version.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/html/plot_bounds.hpp"
-#include "harness/report/html/plot_page.hpp"
-#include "harness/report/rate_sweep_text.hpp"
 #include "harness/report/text.hpp"
 
 namespace attest {
 namespace {
 
 constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
+
+// The limits of a vehicle on a plant.
+struct RateSweepRow {
+  PlantConfiguration plant_configuration;
+  double lowest_rate_hz = -1;            // below 0: no rate is within the bounds
+  std::vector<double> largest_delay_ms;  // by rate; below 0: no delay is within the bounds
+  std::string failure;                   // of the port; empty: the port did not fail
+};
+
+std::vector<RateSweepRow> rows_of(const std::vector<RateSweepResult>& results) {
+  std::vector<RateSweepRow> rows;
+  for (const auto& [result, lowest_rate_hz, largest_delay_ms, trials] : results) {
+    if (rows.empty() || rows.back().plant_configuration != *result.plant_configuration) {
+      rows.push_back({*result.plant_configuration, -1, {}, {}});
+    }
+    RateSweepRow& row = rows.back();
+    if (result.verdict != Verdict::pass && row.failure.empty()) {
+      row.failure = fmt::format("{}: {}", name_of(result.verdict), one_line(result.reason));
+    }
+    if (lowest_rate_hz) row.lowest_rate_hz = *lowest_rate_hz;
+    if (largest_delay_ms) row.largest_delay_ms.push_back(*largest_delay_ms);
+  }
+  return rows;
+}
 
 // A row of the table, and the flights of its vehicle and plant without further delay, by rate [Hz].
 struct Line {
@@ -33,9 +55,9 @@ struct Line {
   }
 };
 
-std::vector<Line> lines_of(const RateSweepRun& run) {
+std::vector<Line> lines_in(const RateSweepRun& run) {
   std::vector<Line> lines;
-  for (RateSweepRow& row : rate_sweep_rows(run.results)) {
+  for (RateSweepRow& row : rows_of(run.results)) {
     const bool is_same = !lines.empty() && lines.back().row.plant_configuration.vehicle ==
                                                row.plant_configuration.vehicle;
     const int vehicle = lines.empty() ? 0 : lines.back().vehicle + (is_same ? 0 : 1);
@@ -64,20 +86,24 @@ PlotSeries empty_series(const Line& line) {
           is_first ? line.vehicle % dark : dark};
 }
 
-PageCell limit_cell(double value) {
+Cell limit_cell(double value) {
   if (value < 0) return {"none", Verdict::fail};
   return fmt::format("{:g}", value);
 }
 
-PageTable limits_table(const RateSweepRun& run, const std::vector<Line>& lines) {
-  PageTable table{"Lowest loop rate, and largest delay of the motor commands",
-                  {"vehicle and plant", "lowest rate [Hz]"}};
+DocumentTable limits_table(const RateSweepRun& run, const std::vector<Line>& lines) {
+  DocumentTable table{
+      "Lowest loop rate, and largest delay of the motor commands, within the bounds",
+      {"vehicle", "plant", "lowest rate [Hz]"}};
   for (const LoopRate& rate : run.rates) {
-    table.header.push_back(fmt::format("delay [ms] at {} Hz", rate.to_string()));
+    table.header.push_back(fmt::format("delay at {} Hz [ms]", rate.to_string()));
   }
   for (const Line& line : lines) {
-    std::vector<PageCell> row = {line.name(), limit_cell(line.row.lowest_rate_hz)};
-    for (const double delay : line.row.largest_delay_ms) row.push_back(limit_cell(delay));
+    const RateSweepRow& of = line.row;
+    std::vector<Cell> row = {of.plant_configuration.vehicle,
+                             std::string(name_of(of.plant_configuration.plant)),
+                             limit_cell(of.lowest_rate_hz)};
+    for (const double delay : of.largest_delay_ms) row.push_back(limit_cell(delay));
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -97,9 +123,9 @@ std::string what_is_missed(const Case& the_case, const RateSweepTrial& trial) {
   return fmt::format("{}", fmt::join(missed, "; "));
 }
 
-PageTable failing_table(const RateSweepRun& run, const std::vector<Line>& lines) {
-  PageTable table{"Highest rate at which a metric is out of bounds",
-                  {"vehicle and plant", "rate [Hz]", "what is missed"}};
+DocumentTable failing_table(const RateSweepRun& run, const std::vector<Line>& lines) {
+  DocumentTable table{"Highest rate at which a metric is out of bounds",
+                      {"vehicle and plant", "rate [Hz]", "what is missed"}};
   for (const Line& line : lines) {
     const auto failing = std::find_if(line.flights.rbegin(), line.flights.rend(),
                                       [](const auto& flight) { return !flight.second.holds; });
@@ -157,29 +183,42 @@ Plot delay_plot(const RateSweepRun& run, const std::vector<Line>& lines) {
 
 }  // namespace
 
-std::string rate_sweep_page(const RateSweepRun& run) {
-  const std::vector<Line> lines = lines_of(run);
-  PlotPage page;
+Document rate_sweep_document(const RateSweepRun& run) {
+  const std::vector<Line> lines = lines_in(run);
+  Document document;
   for (const Line& line : lines) {
     if (line.row.failure.empty()) continue;
-    page.notes.push_back({fmt::format("{}: {}", line.name(), line.row.failure), true});
+    document.notes.push_back({fmt::format("{}: {}", line.name(), line.row.failure), true});
   }
-  const bool failed = !page.notes.empty();
-  page.conclusion = {failed ? Verdict::fail : Verdict::pass, failed ? "fail" : "measured",
-                     fmt::format("{}: limits of loop rate and delay", run.the_case.id()),
-                     fmt::format("{} {}, {} with a plant", run.says.name, run.says.version,
-                                 counted(lines.size(), "vehicle"))};
-  page.facts = {{"attest", version}, {"port", run.port}};
-  page.tables = {limits_table(run, lines), failing_table(run, lines)};
-  if (page.tables.back().rows.empty()) page.tables.pop_back();
+  const bool failed = !document.notes.empty();
+  document.head = {failed ? Verdict::fail : Verdict::pass, failed ? "fail" : "measured",
+                   fmt::format("{}: limits of loop rate and delay", run.the_case.id()),
+                   fmt::format("{} {}, {} with a plant", run.says.name, run.says.version,
+                               counted(lines.size(), "vehicle"))};
+  document.facts = {{"attest", version}, {"port", run.port}};
+  document.tables = {limits_table(run, lines), failing_table(run, lines)};
+  if (document.tables.back().rows.empty()) document.tables.pop_back();
   PlotGroup group{"By loop rate", "loop rate [Hz]", {}};
   const auto& metrics = run.the_case.flight->metrics;
   for (std::size_t i = 0; i < metrics.size(); ++i) {
     group.plots.push_back(metric_plot(metrics[i], i, lines));
   }
   group.plots.push_back(delay_plot(run, lines));
-  page.groups = {std::move(group)};
-  return plot_page(page);
+  document.groups = {std::move(group)};
+  return document;
+}
+
+std::string rate_sweep_csv(const RateSweepRun& run) {
+  const auto cell = [](double value) { return value < 0 ? "" : fmt::format("{:g}", value); };
+  std::string out = "vehicle,plant,rate_hz,largest_delay_ms,lowest_rate_hz\n";
+  for (const RateSweepRow& row : rows_of(run.results)) {
+    for (std::size_t i = 0; i < row.largest_delay_ms.size(); ++i) {
+      out += fmt::format("{},{},{},{},{}\n", row.plant_configuration.vehicle,
+                         name_of(row.plant_configuration.plant), run.rates[i].to_string(),
+                         cell(row.largest_delay_ms[i]), cell(row.lowest_rate_hz));
+    }
+  }
+  return out;
 }
 
 }  // namespace attest

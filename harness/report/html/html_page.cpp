@@ -1,0 +1,213 @@
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <kainjow/mustache.hpp>
+
+#include "harness/core/file.hpp"
+#include "harness/report/document.hpp"
+#include "harness/report/html/base64.hpp"
+#include "harness/report/html/embedded.hpp"
+#include "harness/report/html/plot_data.hpp"
+#include "harness/report/text.hpp"
+
+namespace attest {
+namespace {
+
+using Values = kainjow::mustache::data;
+
+// Runs before the body is shown. The class `scripted` hides the table of all results, so that a
+// browser does not lay it out; page.js replaces it by a list.
+constexpr std::string_view boot_script = "document.documentElement.classList.add('scripted')";
+
+// 'sha256-...' of a script, as a content security policy names it.
+std::string policy_hash(std::string_view script) {
+  const std::string hex = sha256(script);
+  std::string bytes;
+  for (std::size_t i = 0; i < hex.size(); i += 2) {
+    bytes += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
+  }
+  return fmt::format("'sha256-{}'", base64(bytes));
+}
+
+// Does not set an empty value, because mustache shows a section also for an empty text.
+void set_text(Values& out, const char* name, std::string_view value) {
+  if (!value.empty()) out.set(name, Values(std::string(value)));
+}
+
+template <typename Items, typename ToData>
+Values list_of(const Items& items, ToData to_data) {
+  Values list(Values::type::list);
+  for (const auto& item : items) list.push_back(to_data(item));
+  return list;
+}
+
+// One character.
+std::string_view symbol_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return "\u2713";  // check mark
+    case Verdict::fail:
+      return "\u2717";  // ballot x
+    case Verdict::crash:
+      return "\u2738";  // star
+    case Verdict::timeout:
+      return "\u25f7";  // clock face
+    case Verdict::protocol:
+      return "\u00a7";  // section sign
+    case Verdict::non_finite:
+      return "\u221e";  // infinity
+    case Verdict::unsupported:
+      return "\u2013";  // dash
+    case Verdict::skip:
+      return "\u25cb";  // circle
+    case Verdict::xfail:
+      return "\u25c7";  // white diamond
+    case Verdict::xpass:
+      return "\u25c6";  // black diamond
+  }
+  return "";
+}
+
+// The styles, the scripts in the order in which they run, and the hashes of the scripts for the
+// content security policy. The first script is in the head, the last ones follow the data.
+void add_files(bool is_of_run, Values& page) {
+  std::vector<std::string_view> scripts = {dygraphs_script(), dygraphs_synchronizer(),
+                                           shared_script()};
+  if (is_of_run)
+    scripts.insert(scripts.end(), {plots_script(), details_script(), page_script()});
+  else
+    scripts.insert(scripts.end(), {plot_page_script(), replay_script()});
+  std::string hashes = policy_hash(boot_script);
+  for (const std::string_view script : scripts) hashes += " " + policy_hash(script);
+  set_text(page, "boot", boot_script);
+  set_text(page, "script_hashes", hashes);
+  page.set("scripts", list_of(scripts, [](std::string_view script) {
+             return Values("script", Values(std::string(script)));
+           }));
+  set_text(page, "style", page_style());
+  set_text(page, "results_style", results_style());
+  set_text(page, "dygraphs_style", dygraphs_style());
+  set_text(page, "dygraphs_licence", dygraphs_licence());
+}
+
+void add_head(const DocumentHead& head, Values& page) {
+  set_text(page, "outcome",
+           head.verdict == Verdict::pass ? "PASS"
+           : fails_a_run(head.verdict)   ? "FAIL"
+                                         : "NONE");
+  set_text(page, "conclusion_symbol", symbol_of(head.verdict));
+  set_text(page, "word", one_line(head.word));
+  set_text(page, "title", one_line(head.title));
+  set_text(page, "sentence", one_line(head.sentence));
+}
+
+Values cell_to_data(const Cell& cell, bool numeric) {
+  Values out;
+  std::string classes = numeric ? "number" : "";
+  if (cell.verdict) {
+    classes += fmt::format("{}v-{}", numeric ? " " : "", name_of(*cell.verdict));
+    set_text(out, "verdict", name_of(*cell.verdict));
+    set_text(out, "symbol", symbol_of(*cell.verdict));
+  }
+  set_text(out, "class", classes);
+  set_text(out, "text", one_line(cell.text));
+  set_text(out, "small", one_line(cell.small));
+  return out;
+}
+
+Values line_to_data(const Cell& line) { return cell_to_data(line, false); }
+
+Values table_to_data(const DocumentTable& table) {
+  std::vector<bool> numeric;
+  Values header(Values::type::list), rows(Values::type::list);
+  for (std::size_t i = 0; i < table.header.size(); ++i) {
+    numeric.push_back(is_numeric(table, i));
+    header.push_back(cell_to_data(Cell(table.header[i]), numeric.back()));
+  }
+  for (const std::vector<Cell>& row : table.rows) {
+    Values cells(Values::type::list), out;
+    for (std::size_t i = 1; i < row.size(); ++i) {
+      cells.push_back(cell_to_data(row[i], i < numeric.size() && numeric[i]));
+    }
+    out.set("head", cell_to_data(row.empty() ? Cell() : row.front(), false));
+    out.set("cells", cells);
+    rows.push_back(out);
+  }
+  Values out;
+  set_text(out, "caption", one_line(table.caption));
+  out.set("header", header);
+  out.set("rows", rows);
+  out.set("below", list_of(table.below, line_to_data));
+  return out;
+}
+
+Values fact_to_data(const Fact& fact) {
+  Values out;
+  set_text(out, "name", one_line(fact.name));
+  set_text(out, "value", one_line(fact.value));
+  return out;
+}
+
+Values note_to_data(const Note& note) {
+  Values out;
+  set_text(out, "class", note.is_error ? "error" : "note");
+  set_text(out, "text", one_line(note.text));
+  return out;
+}
+
+Values section_to_data(const Section& section) {
+  Values out;
+  set_text(out, "heading", one_line(section.heading));
+  set_text(out, "class", section.is_marked ? "marked" : "");
+  out.set("lines", list_of(section.lines, line_to_data));
+  return out;
+}
+
+// Only the cell with the verdict has a class, because there are many rows.
+Values result_to_data(const std::vector<Cell>& row) {
+  return Values("cells", list_of(row, line_to_data));
+}
+
+// The legend; page.js reads it.
+Values verdicts() {
+  Values list(Values::type::list);
+  for (int i = 0; i < verdict_count; ++i) {
+    const auto verdict = static_cast<Verdict>(i);
+    Values entry = line_to_data({std::string(name_of(verdict)), verdict});
+    entry.set("fails", fails_a_run(verdict));
+    list.push_back(entry);
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string html_page(const Document& document) {
+  Values out;
+  const bool is_of_run = document.results.has_value();
+  add_files(is_of_run, out);
+  add_head(document.head, out);
+  std::vector<Fact> facts = document.facts;
+  std::erase_if(facts, [](const Fact& fact) { return fact.value.empty(); });
+  out.set("notes", list_of(document.notes, note_to_data));
+  out.set("has_sections", !document.sections.empty());
+  out.set("sections", list_of(document.sections, section_to_data));
+  out.set("facts", list_of(facts, fact_to_data));
+  out.set("tables", list_of(document.tables, table_to_data));
+  set_text(out, "table_class", is_of_run ? "matrix" : "figures");
+  set_text(out, "layout", is_of_run ? "columns" : document.replay.empty() ? "plain" : "flight");
+  out.set("has_replay", !document.replay.empty());
+  out.set("has_plots", !document.groups.empty());
+  out.set("is_of_run", is_of_run);
+  if (is_of_run) {
+    out.set("verdicts", verdicts());
+    out.set("results", list_of(*document.results, result_to_data));
+  } else {
+    set_text(out, "plots", plot_data_json(document));
+  }
+  kainjow::mustache::mustache page_of{std::string(page_template())};
+  return page_of.render(out);
+}
+
+}  // namespace attest
