@@ -15,8 +15,7 @@
 #include "harness/core/file.hpp"
 #include "harness/host/trace_format.hpp"
 #include "harness/report/failure_text.hpp"
-#include "harness/report/html/signals_page.hpp"
-#include "harness/report/signals_text.hpp"
+#include "harness/report/signals_document.hpp"
 
 namespace attest::cli {
 namespace {
@@ -107,17 +106,6 @@ Result<void> check_compared(const CompareOptions& options, const SignalsComparis
                   options.got, options.want, shift_text(shift_us)));
 }
 
-int print_by_time(const CompareOptions& options, const SignalsComparison& found,
-                  std::int64_t shift_us, bool quiet) {
-  if (found.agrees() && quiet) return exit_ok;
-  fmt::print("{}: {} (got), {} (want), by time{}: {} of {} common signals agree, {} samples\n",
-             found.agrees() ? "agree" : "differ", options.got, options.want, shift_text(shift_us),
-             found.signals.size() - found.deviating_signals(), found.signals.size(),
-             found.compared());
-  fmt::print("{}", signals_text(found));
-  return found.agrees() ? exit_ok : exit_failed;
-}
-
 int compare_by_time(const CompareOptions& options, Level level, bool quiet) {
   if (level == Level::events) return report_error({"--level events compares ticks, not times"});
   const auto got = signals_in(options.got);
@@ -130,11 +118,17 @@ int compare_by_time(const CompareOptions& options, Level level, bool quiet) {
   if (const auto checked = check_compared(options, found, *shift); !checked) {
     return report_error(checked.error());
   }
+  const Document document = comparison_document(found, *got, *want, *shift);
   if (!options.html.empty()) {
-    const auto written = write_file(options.html, comparison_page(found, *got, *want, *shift));
+    const auto written = write_file(options.html, html_page(document));
     if (!written) return report_error(written.error());
   }
-  return print_by_time(options, found, *shift, quiet);
+  if (!found.agrees() || !quiet) {
+    const DocumentHead& head = document.head;
+    fmt::print("{}: {}: {}\n{}", head.word, head.title, head.sentence,
+               text_of(document.tables.front(), {}));
+  }
+  return found.agrees() ? exit_ok : exit_failed;
 }
 
 int compare_command(const CompareOptions& options, const Globals& globals) {

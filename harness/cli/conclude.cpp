@@ -63,14 +63,9 @@ std::optional<Diagnosis> diagnosed(const RunResult& run, const Examined& examine
 
 int exit_code(const RunResult& run) {
   if (!run.errors.empty()) return exit_usage;
-  switch (conclusion_of(run)) {
-    case Conclusion::pass:
-      return exit_ok;
-    case Conclusion::fail:
-      return exit_failed;
-    case Conclusion::none:
-      break;
-  }
+  const Verdict conclusion = conclusion_of(run);
+  if (conclusion == Verdict::pass) return exit_ok;
+  if (conclusion == Verdict::fail) return exit_failed;
   if (run.count(Verdict::xfail) > 0) {
     return report_error(
         {"no vector passed: every selected vector was an expected failure, skipped or "

@@ -9,7 +9,7 @@
 #include "harness/cli/command.hpp"
 #include "harness/core/file.hpp"
 #include "harness/host/port_process.hpp"
-#include "harness/report/report_format.hpp"
+#include "harness/report/report.hpp"
 #include "harness/verify/run_result.hpp"
 
 namespace attest::cli {

@@ -12,7 +12,7 @@
 #include "harness/diagnosis/naive_suite.hpp"
 #include "harness/port/fault_port.hpp"
 #include "harness/port/profiles.hpp"
-#include "harness/report/diagnosis_text.hpp"
+#include "harness/report/conclusion.hpp"
 #include "harness/report/fault_table.hpp"
 
 namespace attest::cli {

@@ -12,7 +12,7 @@
 #include "harness/core/file.hpp"
 #include "harness/core/suggestion.hpp"
 #include "harness/host/trace_format.hpp"
-#include "harness/report/html/signals_page.hpp"
+#include "harness/report/signals_document.hpp"
 #include "harness/trace/channels.hpp"
 
 namespace attest::cli {
@@ -116,7 +116,7 @@ int plot_command(const PlotOptions& options, const Globals& globals) {
     }
     names->resize(most_signals);
   }
-  if (auto written = write_file(page, signals_page(*sources, *names)); !written) {
+  if (auto written = write_file(page, html_page(signals_document(*sources, *names))); !written) {
     return report_error(written.error());
   }
   if (!globals.quiet && page != "-") {

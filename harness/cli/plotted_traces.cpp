@@ -10,7 +10,7 @@
 #include "harness/core/interrupt.hpp"
 #include "harness/plant/vehicle_models.hpp"
 #include "harness/report/html/plots.hpp"
-#include "harness/report/report_format.hpp"
+#include "harness/report/report.hpp"
 
 namespace attest::cli {
 

@@ -17,11 +17,8 @@
 #include "harness/core/file.hpp"
 #include "harness/core/version.hpp"
 #include "harness/host/trace_format.hpp"
-#include "harness/report/conclusion.hpp"
 #include "harness/report/failure_text.hpp"
-#include "harness/report/html/signals_page.hpp"
-#include "harness/report/log_text.hpp"
-#include "harness/report/replay_json.hpp"
+#include "harness/report/replay_document.hpp"
 #include "harness/report/text.hpp"
 #include "harness/trace/provenance.hpp"
 #include "harness/verify/evaluate.hpp"
@@ -118,7 +115,8 @@ class Replay {
     const auto read = trace.next_part(whole_trace, whole);
     if (!read) return tl::unexpected(read.error());
     VectorResult result = evaluate_trace(whole, subject, *host_, tolerances, &got);
-    keep_page({result.verdict}, [&] { return trace_page(whole, got, result, options_.host.port); });
+    keep_page({result.verdict},
+              [&] { return trace_document(whole, got, result, options_.host.port); });
     return result;
   }
 
@@ -162,7 +160,7 @@ class Replay {
     std::vector<Verdict> verdicts;
     for (const LogResult& found : results) verdicts.push_back(found.result.verdict);
     keep_page(verdicts,
-              [&] { return log_page(*log, results, options_.log_limits, options_.host.port); });
+              [&] { return log_document(*log, results, options_.log_limits, options_.host.port); });
     return {};
   }
 
@@ -174,15 +172,15 @@ class Replay {
     entries_.push_back(json_of_unit(log, unit, found, options_.log_limits));
     if (found.result.verdict == Verdict::pass && globals_.quiet) return {};
     print_result(found.result, title_of(unit), "log", out_);
-    fmt::print(out_, "{}", log_text(unit, found, options_.log_limits));
+    fmt::print(out_, "{}", text_of(unit_table(unit, found, options_.log_limits), {}));
     return {};
   }
 
   // Makes the page only if it is wanted and has a result. Otherwise an old page is kept.
-  template <typename MakePage>
-  void keep_page(const std::vector<Verdict>& verdicts, MakePage make_page) {
+  template <typename MakeDocument>
+  void keep_page(const std::vector<Verdict>& verdicts, MakeDocument make_document) {
     const bool any_result = std::any_of(verdicts.begin(), verdicts.end(), is_judged);
-    if (!options_.html.empty() && any_result) page_ = make_page();
+    if (!options_.html.empty() && any_result) page_ = html_page(make_document());
   }
 
   void count(const VectorResult& result) {
@@ -198,10 +196,10 @@ class Replay {
     const char* const what = !are_logs_                                ? "traces conform"
                              : entries_.size() > options_.files.size() ? "traces and units agree"
                                                                        : "traces and logs agree";
-    const Conclusion conclusion = failed_ > 0   ? Conclusion::fail
-                                  : passed_ > 0 ? Conclusion::pass
-                                                : Conclusion::none;
-    fmt::print(out_, "{} {} of {} {}{} ({}, {}{})\n", name_of(conclusion), passed_, entries_.size(),
+    const Verdict verdict = failed_ > 0   ? Verdict::fail
+                            : passed_ > 0 ? Verdict::pass
+                                          : Verdict::skip;
+    fmt::print(out_, "{} {} of {} {}{} ({}, {}{})\n", outcome_of(verdict), passed_, entries_.size(),
                what, apart > 0 ? fmt::format(", {} not compared", apart) : "", options_.host.port,
                name_of(level_), arithmetic_);
   }

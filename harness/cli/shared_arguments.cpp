@@ -8,7 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "harness/port/port.hpp"
-#include "harness/report/report_format.hpp"
+#include "harness/report/report.hpp"
 #include "harness/ulog/flight_log.hpp"
 
 namespace attest::cli {

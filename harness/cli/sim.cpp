@@ -16,8 +16,7 @@
 #include "harness/core/file.hpp"
 #include "harness/host/trace_format.hpp"
 #include "harness/loop/case_timing.hpp"
-#include "harness/report/failure_text.hpp"
-#include "harness/report/html/flight_page.hpp"
+#include "harness/report/flight_document.hpp"
 #include "harness/verify/simulate.hpp"
 
 namespace attest::cli {
@@ -130,7 +129,7 @@ Result<std::vector<SimulatedFlight>> fly_all(const Sim& sim, const HostOptions& 
   return flights;
 }
 
-Result<void> write(const std::vector<SimulatedFlight>& flights, const Declarations& port,
+Result<void> write(const std::vector<SimulatedFlight>& flights, const Document& document,
                    SimFiles files) {
   const Flown& flown = flights.front().flown;
   if (!files.out.path().empty() && !flown.trace.samples.empty()) {
@@ -141,11 +140,10 @@ Result<void> write(const std::vector<SimulatedFlight>& flights, const Declaratio
     }
   }
   if (files.html.path().empty()) return {};
-  return files.html.commit(flight_page(flights, port));
+  return files.html.commit(html_page(document));
 }
 
-void print(const VectorResult& result, const SimOptions& options, bool is_written) {
-  std::FILE* const to = options.out == "-" || options.html == "-" ? stderr : stdout;
+void print(const VectorResult& result, const SimOptions& options, bool is_written, std::FILE* to) {
   std::vector<std::string> files;
   if (result.ticks > 0 && !options.out.empty()) {
     files.push_back(options.out);
@@ -156,10 +154,6 @@ void print(const VectorResult& result, const SimOptions& options, bool is_writte
   fmt::print(to, "{}  {} ticks{}{}\n", result.id(), result.ticks, files.empty() ? "" : " -> ",
              fmt::join(files, ", "));
   if (!result.reason.empty()) fmt::print(to, "  {}: {}\n", name_of(result.verdict), result.reason);
-  for (const MetricResult& metric : result.metrics) {
-    fmt::print(to, "  {:<20} {:<24}{:>10.4g}  {}{}\n", metric.name, name_of(metric.measure),
-               metric.value, metric_bounds(metric), metric.within() ? "" : "  MISSED");
-  }
 }
 
 int sim_command(const SimOptions& options, const Globals& globals) {
@@ -177,13 +171,20 @@ int sim_command(const SimOptions& options, const Globals& globals) {
   const bool any_result =
       std::any_of(flights->begin(), flights->end(),
                   [](const SimulatedFlight& flight) { return is_judged(flight.result.verdict); });
-  const auto written = any_result ? write(*flights, *port, *std::move(files)) : Result<void>();
+  const Document document = flight_document(*flights, *port);
+  const auto written = any_result ? write(*flights, document, *std::move(files)) : Result<void>();
   if (!written) return report_error(written.error());
-  bool any_fails = false;
+  std::FILE* const to = options.out == "-" || options.html == "-" ? stderr : stdout;
+  bool any_fails = false, any_shown = false;
   for (const SimulatedFlight& flight : *flights) {
     const Verdict verdict = flight.result.verdict;
-    if (!globals.quiet || verdict != Verdict::pass) print(flight.result, options, any_result);
+    const bool is_shown = !globals.quiet || verdict != Verdict::pass;
+    if (is_shown) print(flight.result, options, any_result, to);
+    any_shown = any_shown || is_shown;
     any_fails = any_fails || fails_a_run(verdict);
+  }
+  if (any_shown) {
+    for (const DocumentTable& table : document.tables) fmt::print(to, "{}", text_of(table, {}));
   }
   if (!any_result) return report_error({"the port did not fly: no flight has a result"});
   return any_fails ? exit_failed : exit_ok;

@@ -16,7 +16,7 @@
 #include "harness/core/interrupt.hpp"
 #include "harness/process/program.hpp"
 #include "harness/realtime/load.hpp"
-#include "harness/report/junit.hpp"
+#include "harness/report/report.hpp"
 #include "harness/report/stress_document.hpp"
 
 namespace attest::cli {

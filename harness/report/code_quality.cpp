@@ -1,5 +1,3 @@
-#include "harness/report/code_quality.hpp"
-
 #include <set>
 
 #include <fmt/format.h>
@@ -8,6 +6,7 @@
 #include "harness/core/file.hpp"
 #include "harness/core/json_text.hpp"
 #include "harness/report/failure_text.hpp"
+#include "harness/report/report.hpp"
 #include "harness/report/text.hpp"
 
 namespace attest {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -13,12 +14,8 @@ namespace {
 
 bool begins_with_number(const std::string& text) {
   const std::size_t sign = text.starts_with('-') || text.starts_with('+') ? 1 : 0;
-  return text.size() > sign && std::isdigit(static_cast<unsigned char>(text[sign])) != 0;
-}
-
-Colour colour_of(Verdict verdict) {
-  if (verdict == Verdict::pass) return Colour::green;
-  return fails_a_run(verdict) ? Colour::red : Colour::yellow;
+  return text == "inf" ||
+         (text.size() > sign && std::isdigit(static_cast<unsigned char>(text[sign])) != 0);
 }
 
 // A column as text. The first text is that of the header.
@@ -93,6 +90,16 @@ std::string block(const DocumentTable& table, const std::vector<TextColumn>& col
 
 }  // namespace
 
+std::string_view outcome_of(Verdict verdict) {
+  if (verdict == Verdict::pass) return "PASS";
+  return fails_a_run(verdict) ? "FAIL" : "NONE";
+}
+
+Colour colour_of(Verdict verdict) {
+  if (verdict == Verdict::pass) return Colour::green;
+  return fails_a_run(verdict) ? Colour::red : Colour::yellow;
+}
+
 Cell::Cell(std::optional<Nanoseconds> time_, std::optional<Verdict> verdict_)
     : text(time_ ? fmt::format("{:.4g}", microseconds(*time_)) : "-"),
       verdict(verdict_),
@@ -108,6 +115,21 @@ std::string human_time(Nanoseconds time) {
   return fmt::format("{:.3g} s", ns / 1e9);
 }
 
+std::pair<float, float> drawn_bounds(double min, double max,
+                                     const std::vector<PlotSeries>& series) {
+  double lowest = std::numeric_limits<double>::max(), highest = -lowest;
+  for (const PlotSeries& one : series) {
+    for (const float y : one.y) {
+      if (!std::isfinite(y)) continue;
+      lowest = std::min(lowest, static_cast<double>(y));
+      highest = std::max(highest, static_cast<double>(y));
+    }
+  }
+  const double low = std::isinf(min) ? std::min(lowest, max) : min;
+  const double high = std::isinf(max) ? std::max(highest, low) : max;
+  return {static_cast<float>(low), static_cast<float>(high)};
+}
+
 bool is_numeric(const DocumentTable& table, std::size_t column) {
   return column > 0 && std::all_of(table.rows.begin(), table.rows.end(), [&](const auto& row) {
            return column >= row.size() || row[column].text.empty() || row[column].text == "-" ||
@@ -117,12 +139,14 @@ bool is_numeric(const DocumentTable& table, std::size_t column) {
 
 std::string text_of(const DocumentTable& table, TerminalStyle style) {
   std::string out;
-  if (!table.caption.empty()) out += one_line(table.caption) + "\n";
+  const bool has_rows = rows_in_text(table) > 0;
+  const bool has_caption = !table.caption.empty() && table.rows_in_text > 0;
+  if (has_caption) out += one_line(table.caption) + "\n";
   std::vector<TextColumn> columns;
   for (std::size_t i = 0; i < table.header.size(); ++i) columns.push_back(column_of(table, i));
   const int indent = table.caption.empty() ? 0 : 2;
   const auto limit = static_cast<std::size_t>(std::max(style.width - indent, 0));
-  for (std::size_t begin = 1; begin < columns.size() && !table.rows.empty();) {
+  for (std::size_t begin = 1; begin < columns.size() && has_rows;) {
     const std::size_t end = last_that_fits(columns, begin, limit);
     if (begin > 1) out += "\n";
     out += block(table, columns, begin, end, style);
@@ -149,7 +173,7 @@ std::string text_of(const Document& document, TerminalStyle style) {
     if (note.is_in_text) out += one_line(note.text) + "\n";
   }
   for (const DocumentTable& table : document.tables) {
-    if (table.rows_in_text > 0) out += "\n" + text_of(table, style);
+    if (const std::string text = text_of(table, style); !text.empty()) out += "\n" + text;
   }
   return out;
 }

@@ -19,6 +19,8 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "harness/core/ticks.hpp"
@@ -79,7 +81,8 @@ struct DocumentTable {
   std::vector<std::string> header;
   std::vector<std::vector<Cell>> rows = {};
   std::vector<Cell> below = {};  // lines below the table, such as commands
-  std::size_t rows_in_text = std::numeric_limits<std::size_t>::max();  // 0: only on the page
+  // 0: only the lines below the table are in the text.
+  std::size_t rows_in_text = std::numeric_limits<std::size_t>::max();
 };
 
 enum class LinePattern { solid, dashed, dotted };
@@ -170,6 +173,14 @@ double microseconds(Nanoseconds time);
 std::string text_of(const Document& document, TerminalStyle style);
 std::string text_of(const DocumentHead& head, TerminalStyle style);  // "title\nPASS sentence\n"
 std::string text_of(const DocumentTable& table, TerminalStyle style);
+
+// The bounds of a metric, for a PlotBand of a plot with these series. An infinite bound is drawn at
+// the outermost value of the series, or at the other bound if that is farther out.
+std::pair<float, float> drawn_bounds(double min, double max, const std::vector<PlotSeries>& series);
+
+// "PASS", "FAIL", or "NONE" for a verdict that is neither.
+std::string_view outcome_of(Verdict verdict);
+Colour colour_of(Verdict verdict);
 
 // Whether a column of a table has numbers.
 bool is_numeric(const DocumentTable& table, std::size_t column);

@@ -11,28 +11,6 @@
 namespace attest {
 namespace {
 
-struct GroupCount {
-  std::size_t detectable = 0, by_own = 0, by_any = 0, by_naive = 0;
-};
-
-std::vector<std::pair<std::string, GroupCount>> by_group(
-    const std::vector<FaultFinding>& findings) {
-  std::vector<std::pair<std::string, GroupCount>> groups;
-  for (const FaultFinding& finding : findings) {
-    const std::string group(finding.fault->group);
-    auto found = std::find_if(groups.begin(), groups.end(),
-                              [&](const auto& known) { return known.first == group; });
-    if (found == groups.end()) found = groups.insert(groups.end(), {group, {}});
-    if (!finding.is_detectable()) continue;
-    GroupCount& count = found->second;
-    ++count.detectable;
-    count.by_own += finding.is_caught_by_own_group() ? 1 : 0;
-    count.by_any += finding.is_caught() ? 1 : 0;
-    count.by_naive += finding.by_hover || finding.by_random_attitudes ? 1 : 0;
-  }
-  return groups;
-}
-
 std::string caught_by(const FaultFinding& finding) {
   if (!finding.is_detectable()) {
     if (finding.fault->equivalent.empty()) return "the profile does not have this";
@@ -91,9 +69,20 @@ FaultSummary summary_of(const std::vector<FaultFinding>& findings) {
 std::string render_fault_table(const std::vector<FaultFinding>& findings) {
   std::string out =
       "| group | faults | caught by it | by any | by a naive suite |\n|---|---|---|---|---|\n";
-  for (const auto& [group, count] : by_group(findings)) {
-    out += fmt::format("| {} | {} | {} | {} | {} |\n", group, count.detectable, count.by_own,
-                       count.by_any, count.by_naive);
+  std::vector<std::pair<std::string_view, std::vector<FaultFinding>>> groups;
+  for (const FaultFinding& finding : findings) {
+    const auto same = std::find_if(groups.begin(), groups.end(), [&](const auto& known) {
+      return known.first == finding.fault->group;
+    });
+    if (same != groups.end())
+      same->second.push_back(finding);
+    else
+      groups.push_back({finding.fault->group, {finding}});
+  }
+  for (const auto& [group, of_group] : groups) {
+    const FaultSummary of = summary_of(of_group);
+    out += fmt::format("| {} | {} | {} | {} | {} |\n", group, of.detectable,
+                       of.caught - of.not_by_own.size(), of.caught, of.by_naive);
   }
   out +=
       "\n| fault | stage | what it does | first caught by | at tick | naive suite |\n"

@@ -8,6 +8,7 @@
 
 #include "harness/core/file.hpp"
 #include "harness/report/conclusion.hpp"
+#include "harness/report/document.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/terminal.hpp"
 #include "harness/report/text.hpp"
@@ -86,8 +87,8 @@ std::string github_summary(const RunResult& run, double wall_s,
                            const std::optional<Diagnosis>& diagnosis) {
   const std::string text = render_summary(run, wall_s, {}, diagnosis);
   const std::string fence = fence_of(text);
-  return fmt::format("### attest: {}\n\n{}text\n{}{}\n\n", name_of(conclusion_of(run)), fence, text,
-                     fence);
+  return fmt::format("### attest: {}\n\n{}text\n{}{}\n\n", outcome_of(conclusion_of(run)), fence,
+                     text, fence);
 }
 
 }  // namespace attest

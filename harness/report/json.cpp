@@ -1,10 +1,9 @@
-#include "harness/report/json.hpp"
-
 #include <nlohmann/json.hpp>
 
 #include "harness/core/json_reader.hpp"
 #include "harness/core/json_text.hpp"
 #include "harness/report/failure_text.hpp"
+#include "harness/report/report.hpp"
 #include "harness/report/statement.hpp"
 #include "harness/verify/claim.hpp"
 #include "harness/verify/verdict_json.hpp"

@@ -1,56 +1,44 @@
-#include "harness/report/junit.hpp"
-
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
-#include "harness/report/diagnosis_text.hpp"
+#include "harness/report/conclusion.hpp"
 #include "harness/report/failure_text.hpp"
+#include "harness/report/report.hpp"
 #include "harness/report/statement.hpp"
 #include "harness/report/text.hpp"
-#include "harness/report/xml.hpp"
 
 namespace attest {
 namespace {
 
-enum class Outcome { passed, failure, error, skipped };
+void set_attribute(pugi::xml_node node, const char* name, const std::string& value) {
+  node.append_attribute(name).set_value(value.c_str());
+}
 
-Outcome outcome_of(Verdict verdict) {
+// The element in a testcase; empty for a pass.
+std::string_view element_of(Verdict verdict) {
   switch (verdict) {
     case Verdict::pass:
-      return Outcome::passed;
+      return "";
     case Verdict::fail:
     case Verdict::non_finite:
     case Verdict::xpass:
-      return Outcome::failure;
-    case Verdict::crash:
-    case Verdict::timeout:
-    case Verdict::protocol:
-      return Outcome::error;
+      return "failure";
     case Verdict::unsupported:
     case Verdict::skip:
     case Verdict::xfail:
-      return Outcome::skipped;
-  }
-  return Outcome::error;
-}
-
-const char* element_of(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::passed:
-      return "";
-    case Outcome::failure:
-      return "failure";
-    case Outcome::error:
-      return "error";
-    case Outcome::skipped:
       return "skipped";
+    case Verdict::crash:
+    case Verdict::timeout:
+    case Verdict::protocol:
+      break;
   }
-  return "";
+  return "error";
 }
 
 struct Counts {
@@ -60,12 +48,18 @@ struct Counts {
   std::size_t skipped = 0;
   double time_s = 0;
 
-  void add(Outcome outcome, double elapsed_s) {
+  void add(const VectorResult& result) {
+    const std::string_view element = element_of(result.verdict);
     tests += 1;
-    failures += outcome == Outcome::failure ? 1 : 0;
-    errors += outcome == Outcome::error ? 1 : 0;
-    skipped += outcome == Outcome::skipped ? 1 : 0;
-    time_s += elapsed_s;
+    failures += element == "failure" ? 1 : 0;
+    errors += element == "error" ? 1 : 0;
+    skipped += element == "skipped" ? 1 : 0;
+    if (std::isfinite(result.elapsed_s)) time_s += std::max(result.elapsed_s, 0.0);
+  }
+
+  void add_errors(std::size_t count) {
+    tests += count;
+    errors += count;
   }
 };
 
@@ -73,8 +67,6 @@ struct Counts {
 std::string seconds(double time_s) {
   return fmt::format("{:.6f}", std::isfinite(time_s) && time_s > 0 ? time_s : 0.0);
 }
-
-double usable(double elapsed_s) { return std::isfinite(elapsed_s) ? std::max(elapsed_s, 0.0) : 0; }
 
 void set_counts(pugi::xml_node node, const Counts& counts) {
   set_attribute(node, "tests", fmt::to_string(counts.tests));
@@ -109,9 +101,9 @@ void add_properties(pugi::xml_node suite, const RunResult& run) {
 }
 
 // `type` must not be one of the words that ActiveSupport (GitLab) casts by: "file", "float", ...
-void add_outcome(pugi::xml_node test, Outcome outcome, std::string_view type,
+void add_outcome(pugi::xml_node test, std::string_view element, std::string_view type,
                  const std::string& message, const std::string& content) {
-  pugi::xml_node node = test.append_child(element_of(outcome));
+  pugi::xml_node node = test.append_child(std::string(element).c_str());
   set_attribute(node, "type", std::string(type));
   set_attribute(node, "message", message);
   node.text().set(content.c_str());
@@ -143,11 +135,11 @@ void add_result(pugi::xml_node suite, const VectorResult& result, const RunResul
                 const std::optional<Diagnosis>& diagnosis) {
   const std::string name = one_line(result.name + "@" + result.configuration().label());
   const pugi::xml_node test = add_test(suite, suite_name(result), name, result.elapsed_s);
-  const Outcome outcome = outcome_of(result.verdict);
-  if (outcome == Outcome::passed) return;
+  const std::string_view element = element_of(result.verdict);
+  if (element.empty()) return;
   const std::string headline = failure_headline(result);
-  add_outcome(test, outcome, name_of(result.verdict), headline,
-              outcome == Outcome::skipped ? headline : failure_content(result, run, diagnosis));
+  add_outcome(test, element, name_of(result.verdict), headline,
+              element == "skipped" ? headline : failure_content(result, run, diagnosis));
 }
 
 pugi::xml_node add_suite(pugi::xml_node root, const std::string& name, const Counts& counts,
@@ -174,7 +166,7 @@ std::vector<Suite> suites_of(const RunResult& run) {
     auto suite = std::find_if(suites.begin(), suites.end(),
                               [&name](const Suite& known) { return known.name == name; });
     if (suite == suites.end()) suite = suites.insert(suite, Suite{name, {}, {}});
-    suite->counts.add(outcome_of(result.verdict), usable(result.elapsed_s));
+    suite->counts.add(result);
     suite->results.push_back(&result);
   }
   return suites;
@@ -184,31 +176,22 @@ void add_environment(pugi::xml_node root, const RunResult& run) {
   if (run.errors.empty()) return;
   const std::string name = "attest.environment";
   Counts counts;
-  for (std::size_t i = 0; i < run.errors.size(); ++i) counts.add(Outcome::error, 0);
+  counts.add_errors(run.errors.size());
   const pugi::xml_node suite = add_suite(root, name, counts, run);
   for (std::size_t i = 0; i < run.errors.size(); ++i) {
     const std::string text = run.errors[i].to_string();
     const pugi::xml_node test = add_test(suite, name, fmt::format("error_{}", i + 1), 0);
-    add_outcome(test, Outcome::error, "environment", one_line(text), printable(text));
+    add_outcome(test, "error", "environment", one_line(text), printable(text));
   }
 }
-
-struct StringWriter : pugi::xml_writer {
-  std::string text;
-  void write(const void* bytes, std::size_t size) override {
-    text.append(static_cast<const char*>(bytes), size);
-  }
-};
 
 }  // namespace
 
 std::string junit_report(const RunResult& run, const std::optional<Diagnosis>& diagnosis) {
   const std::vector<Suite> suites = suites_of(run);
   Counts all;
-  for (const VectorResult& result : run.results) {
-    all.add(outcome_of(result.verdict), usable(result.elapsed_s));
-  }
-  for (std::size_t i = 0; i < run.errors.size(); ++i) all.add(Outcome::error, 0);
+  for (const VectorResult& result : run.results) all.add(result);
+  all.add_errors(run.errors.size());
 
   pugi::xml_document document;
   pugi::xml_node declaration = document.append_child(pugi::node_declaration);
@@ -224,9 +207,9 @@ std::string junit_report(const RunResult& run, const std::optional<Diagnosis>& d
     for (const VectorResult* result : suite.results) add_result(node, *result, run, diagnosis);
   }
   add_environment(root, run);
-  StringWriter writer;
-  document.save(writer, "  ", pugi::format_default, pugi::encoding_utf8);
-  return writer.text;
+  std::ostringstream out;
+  document.save(out, "  ", pugi::format_default, pugi::encoding_utf8);
+  return out.str();
 }
 
 }  // namespace attest

@@ -11,7 +11,6 @@
 
 #include "harness/core/version.hpp"
 #include "harness/report/failure_text.hpp"
-#include "harness/report/html/plot_bounds.hpp"
 #include "harness/report/text.hpp"
 
 namespace attest {
@@ -19,56 +18,34 @@ namespace {
 
 constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
 
-// The limits of a vehicle on a plant.
-struct RateSweepRow {
-  PlantConfiguration plant_configuration;
-  double lowest_rate_hz = -1;            // below 0: no rate is within the bounds
-  std::vector<double> largest_delay_ms;  // by rate; below 0: no delay is within the bounds
-  std::string failure;                   // of the port; empty: the port did not fail
-};
-
-std::vector<RateSweepRow> rows_of(const std::vector<RateSweepResult>& results) {
-  std::vector<RateSweepRow> rows;
-  for (const auto& [result, lowest_rate_hz, largest_delay_ms, trials] : results) {
-    if (rows.empty() || rows.back().plant_configuration != *result.plant_configuration) {
-      rows.push_back({*result.plant_configuration, -1, {}, {}});
-    }
-    RateSweepRow& row = rows.back();
-    if (result.verdict != Verdict::pass && row.failure.empty()) {
-      row.failure = fmt::format("{}: {}", name_of(result.verdict), one_line(result.reason));
-    }
-    if (lowest_rate_hz) row.lowest_rate_hz = *lowest_rate_hz;
-    if (largest_delay_ms) row.largest_delay_ms.push_back(*largest_delay_ms);
-  }
-  return rows;
-}
-
-// A row of the table, and the flights of its vehicle and plant without further delay, by rate [Hz].
+// The limits of a vehicle on a plant: a row of the table, and a line in the plots.
 struct Line {
-  int vehicle = 0;  // number of the vehicle, for the colour
-  RateSweepRow row;
-  std::map<double, RateSweepTrial> flights;
+  PlantConfiguration on;
+  int vehicle = 0;                                // number of the vehicle, for the colour
+  double lowest_rate_hz = -1;                     // below 0: no rate is within the bounds
+  std::vector<double> largest_delay_ms = {};      // by rate; below 0: no delay is within the bounds
+  std::string failure = {};                       // of the port; empty: the port did not fail
+  std::map<double, RateSweepTrial> flights = {};  // without further delay, by rate [Hz]
 
-  std::string name() const {
-    return fmt::format("{} on {}", row.plant_configuration.vehicle,
-                       name_of(row.plant_configuration.plant));
-  }
+  std::string name() const { return fmt::format("{} on {}", on.vehicle, name_of(on.plant)); }
 };
 
 std::vector<Line> lines_in(const RateSweepRun& run) {
   std::vector<Line> lines;
-  for (RateSweepRow& row : rows_of(run.results)) {
-    const bool is_same = !lines.empty() && lines.back().row.plant_configuration.vehicle ==
-                                               row.plant_configuration.vehicle;
-    const int vehicle = lines.empty() ? 0 : lines.back().vehicle + (is_same ? 0 : 1);
-    lines.push_back({vehicle, std::move(row), {}});
-  }
-  for (const RateSweepResult& found : run.results) {
-    const auto line = std::find_if(lines.begin(), lines.end(), [&](const Line& one) {
-      return one.row.plant_configuration == *found.result.plant_configuration;
-    });
-    for (const RateSweepTrial& trial : found.trials) {
-      if (trial.delay_ms == 0) line->flights.emplace(trial.rate_hz, trial);
+  for (const auto& [result, lowest_rate_hz, largest_delay_ms, trials] : run.results) {
+    const PlantConfiguration& on = *result.plant_configuration;
+    if (lines.empty() || lines.back().on != on) {
+      const bool is_other = !lines.empty() && lines.back().on.vehicle != on.vehicle;
+      lines.push_back({on, lines.empty() ? 0 : lines.back().vehicle + (is_other ? 1 : 0)});
+    }
+    Line& line = lines.back();
+    if (result.verdict != Verdict::pass && line.failure.empty()) {
+      line.failure = fmt::format("{}: {}", name_of(result.verdict), one_line(result.reason));
+    }
+    if (lowest_rate_hz) line.lowest_rate_hz = *lowest_rate_hz;
+    if (largest_delay_ms) line.largest_delay_ms.push_back(*largest_delay_ms);
+    for (const RateSweepTrial& trial : trials) {
+      if (trial.delay_ms == 0) line.flights.emplace(trial.rate_hz, trial);
     }
   }
   return lines;
@@ -78,7 +55,7 @@ std::vector<Line> lines_in(const RateSweepRun& run) {
 // dotted, because the lines of two plants often coincide.
 PlotSeries empty_series(const Line& line) {
   constexpr int dark = 5;
-  const bool is_first = line.row.plant_configuration.plant == plant_kinds.front();
+  const bool is_first = line.on.plant == plant_kinds.front();
   return {line.name(),
           {},
           {},
@@ -99,11 +76,9 @@ DocumentTable limits_table(const RateSweepRun& run, const std::vector<Line>& lin
     table.header.push_back(fmt::format("delay at {} Hz [ms]", rate.to_string()));
   }
   for (const Line& line : lines) {
-    const RateSweepRow& of = line.row;
-    std::vector<Cell> row = {of.plant_configuration.vehicle,
-                             std::string(name_of(of.plant_configuration.plant)),
-                             limit_cell(of.lowest_rate_hz)};
-    for (const double delay : of.largest_delay_ms) row.push_back(limit_cell(delay));
+    std::vector<Cell> row = {line.on.vehicle, std::string(name_of(line.on.plant)),
+                             limit_cell(line.lowest_rate_hz)};
+    for (const double delay : line.largest_delay_ms) row.push_back(limit_cell(delay));
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -167,8 +142,8 @@ Plot delay_plot(const RateSweepRun& run, const std::vector<Line>& lines) {
   plot.logarithmic_x = true;
   for (const Line& line : lines) {
     std::map<double, float> by_rate;
-    for (std::size_t i = 0; i < line.row.largest_delay_ms.size(); ++i) {
-      const double delay = line.row.largest_delay_ms[i];
+    for (std::size_t i = 0; i < line.largest_delay_ms.size(); ++i) {
+      const double delay = line.largest_delay_ms[i];
       by_rate[run.rates[i].hertz()] = delay < 0 ? no_value : static_cast<float>(delay);
     }
     PlotSeries series = empty_series(line);
@@ -187,8 +162,8 @@ Document rate_sweep_document(const RateSweepRun& run) {
   const std::vector<Line> lines = lines_in(run);
   Document document;
   for (const Line& line : lines) {
-    if (line.row.failure.empty()) continue;
-    document.notes.push_back({fmt::format("{}: {}", line.name(), line.row.failure), true});
+    if (line.failure.empty()) continue;
+    document.notes.push_back({fmt::format("{}: {}", line.name(), line.failure), true});
   }
   const bool failed = !document.notes.empty();
   document.head = {failed ? Verdict::fail : Verdict::pass, failed ? "fail" : "measured",
@@ -211,11 +186,11 @@ Document rate_sweep_document(const RateSweepRun& run) {
 std::string rate_sweep_csv(const RateSweepRun& run) {
   const auto cell = [](double value) { return value < 0 ? "" : fmt::format("{:g}", value); };
   std::string out = "vehicle,plant,rate_hz,largest_delay_ms,lowest_rate_hz\n";
-  for (const RateSweepRow& row : rows_of(run.results)) {
-    for (std::size_t i = 0; i < row.largest_delay_ms.size(); ++i) {
-      out += fmt::format("{},{},{},{},{}\n", row.plant_configuration.vehicle,
-                         name_of(row.plant_configuration.plant), run.rates[i].to_string(),
-                         cell(row.largest_delay_ms[i]), cell(row.lowest_rate_hz));
+  for (const Line& line : lines_in(run)) {
+    for (std::size_t i = 0; i < line.largest_delay_ms.size(); ++i) {
+      out += fmt::format("{},{},{},{},{}\n", line.on.vehicle, name_of(line.on.plant),
+                         run.rates[i].to_string(), cell(line.largest_delay_ms[i]),
+                         cell(line.lowest_rate_hz));
     }
   }
   return out;

@@ -13,11 +13,10 @@
 namespace attest {
 namespace {
 
-std::string spread(std::string_view name, std::vector<Nanoseconds> times) {
-  if (times.empty()) return "";
+void add_spread(const std::string& name, std::vector<Nanoseconds> times, DocumentTable& table) {
+  if (times.empty()) return;
   std::sort(times.begin(), times.end());
-  return fmt::format("  {:<32}{:>10}{:>10}{:>10}\n", name, human_time(times.front()),
-                     human_time(times[times.size() / 2]), human_time(times.back()));
+  table.rows.push_back({name, times.front(), times[times.size() / 2], times.back()});
 }
 
 // `result`: the name of the output of a job, "command".
@@ -29,31 +28,30 @@ std::string delays(std::string_view unit, std::string_view result, const std::ve
     results.push_back(jobs[i].finish - jobs[i].release);
     if (timing[i].sampled >= Nanoseconds(0)) ages.push_back(jobs[i].finish - timing[i].sampled);
   }
-  return fmt::format("{:<34}{:>10}{:>10}{:>10}\n", fmt::format("delays of the {}", unit), "least",
-                     "median", "most") +
-         spread("start after the release", begins) +
-         spread(fmt::format("{} after the release", result), results) +
-         spread(fmt::format("sample age at the {}", result), ages);
+  DocumentTable table{fmt::format("delays of the {}", unit), {"", "least", "median", "most"}};
+  add_spread("start after the release", begins, table);
+  add_spread(fmt::format("{} after the release", result), results, table);
+  add_spread(fmt::format("sample age at the {}", result), ages, table);
+  return text_of(table, {});
 }
 
 }  // namespace
 
 std::string render_tasks(const TaskSet& set, const std::vector<std::vector<TaskJob>>& jobs) {
-  std::string out = fmt::format("{:<16}{:>4}{:>10}{:>10}{:>12}{:>14}{:>14}\n", "task", "CPU",
-                                "priority", "rate", "execution", "response:", "");
-  out += fmt::format("{:<52}{:>14}{:>14}\n", "", "analysed", "simulated");
+  DocumentTable table{
+      "",
+      {"task", "CPU", "priority", "rate [Hz]", "execution", "response: analysed", "simulated", ""}};
   for (std::size_t i = 0; i < set.tasks.size(); ++i) {
     const ScheduledTask& task = set.tasks[i];
     Nanoseconds longest{0};
     for (const TaskJob& job : jobs[i]) longest = std::max(longest, job.response());
     const auto analysed = response_time(set.tasks, i);
-    out += fmt::format("{:<16}{:>4}{:>10}{:>10}{:>12}{:>14}{:>14}{}\n", one_line(task.name),
-                       task.cpu, task.priority, task.rate.to_string() + " Hz",
-                       human_time(task.worst_execution()),
-                       analysed ? human_time(*analysed) : "over a period", human_time(longest),
-                       longest > task.rate.tick(1) ? "  longer than its period" : "");
+    table.rows.push_back({task.name, fmt::to_string(task.cpu), fmt::to_string(task.priority),
+                          task.rate.to_string(), task.worst_execution(),
+                          analysed ? Cell(*analysed) : Cell("over a period"), longest,
+                          longest > task.rate.tick(1) ? "longer than its period" : ""});
   }
-  return out;
+  return text_of(table, {});
 }
 
 std::string render_delays(const TaskSet& set, const std::vector<std::vector<TaskJob>>& jobs,
@@ -64,13 +62,14 @@ std::string render_delays(const TaskSet& set, const std::vector<std::vector<Task
 }
 
 std::string render_flights(const VectorResult& in_time, const VectorResult& scheduled) {
-  std::string out = fmt::format("{:<44}{:>12}{:>12}\n", in_time.case_id(), "in time", "scheduled");
+  DocumentTable table{in_time.case_id(), {"metric", "measure", "in time", "scheduled", "bounds"}};
   for (std::size_t i = 0; i < in_time.metrics.size() && i < scheduled.metrics.size(); ++i) {
     const MetricResult& metric = in_time.metrics[i];
-    out +=
-        fmt::format("  {:<18}{:<24}{:>12.4g}{:>12.4g}  {}\n", metric.name, name_of(metric.measure),
-                    metric.value, scheduled.metrics[i].value, metric_bounds(metric));
+    table.rows.push_back(
+        {metric.name, std::string(name_of(metric.measure)), fmt::format("{:.4g}", metric.value),
+         fmt::format("{:.4g}", scheduled.metrics[i].value), metric_bounds(metric)});
   }
+  std::string out = text_of(table, {});
   for (const auto& [when, result] :
        {std::pair("in time", &in_time), std::pair("scheduled", &scheduled)}) {
     if (result->verdict == Verdict::pass) continue;

@@ -8,7 +8,6 @@
 #include <pugixml.hpp>
 
 #include "harness/report/text.hpp"
-#include "harness/report/xml.hpp"
 #include "harness/verify/claim.hpp"
 
 namespace attest {
@@ -120,20 +119,11 @@ const char* colour_of(Standing standing) {
   return "#b3372f";
 }
 
-void add_box(pugi::xml_node svg, int x, int width, const char* colour, const std::string& text) {
-  pugi::xml_node box = svg.append_child("rect");
-  set_attribute(box, "x", fmt::to_string(x));
-  set_attribute(box, "width", fmt::to_string(width));
-  set_attribute(box, "height", "20");
-  set_attribute(box, "fill", colour);
-  pugi::xml_node words = svg.append_child("text");
-  set_attribute(words, "x", fmt::to_string(x + width / 2));
-  set_attribute(words, "y", "14");
-  set_attribute(words, "fill", "#fff");
-  set_attribute(words, "text-anchor", "middle");
-  set_attribute(words, "font-family", "Verdana,DejaVu Sans,sans-serif");
-  set_attribute(words, "font-size", "11");
-  words.text().set(text.c_str());
+std::string box(int x, int width, const char* colour) {
+  return fmt::format(R"(<rect x="{0}" width="{1}" height="20" fill="{2}"/>)"
+                     R"(<text x="{3}" y="14" fill="#fff" text-anchor="middle" )"
+                     R"(font-family="Verdana,DejaVu Sans,sans-serif" font-size="11"/>)",
+                     x, width, colour, x + width / 2);
 }
 
 }  // namespace
@@ -163,16 +153,19 @@ std::string badge(const RunResult& run) {
   const std::string right =
       standing == Standing::none ? "does not conform" : on_the_badge(run, standing);
   const auto width = [](const std::string& text) { return 7 * static_cast<int>(text.size()) + 10; };
+  const int left_width = width(left), right_width = width(right);
   pugi::xml_document document;
-  pugi::xml_node svg = document.append_child("svg");
-  set_attribute(svg, "xmlns", "http://www.w3.org/2000/svg");
-  set_attribute(svg, "width", fmt::to_string(width(left) + width(right)));
-  set_attribute(svg, "height", "20");
-  set_attribute(svg, "role", "img");
-  set_attribute(svg, "aria-label", left + ": " + right);
-  svg.append_child("title").text().set((left + ": " + conformance_statement(run)).c_str());
-  add_box(svg, 0, width(left), "#555", left);
-  add_box(svg, width(left), width(right), colour_of(standing), right);
+  document.load_string(
+      fmt::format(R"(<svg xmlns="http://www.w3.org/2000/svg" width="{}" height="20" role="img" )"
+                  R"(aria-label=""><title/>{}{}</svg>)",
+                  left_width + right_width, box(0, left_width, "#555"),
+                  box(left_width, right_width, colour_of(standing)))
+          .c_str());
+  const pugi::xml_node svg = document.child("svg");
+  svg.attribute("aria-label").set_value((left + ": " + right).c_str());
+  svg.child("title").text().set((left + ": " + conformance_statement(run)).c_str());
+  svg.find_child_by_attribute("text", "y", "14").text().set(left.c_str());
+  svg.last_child().text().set(right.c_str());
   std::ostringstream out;
   document.save(out, "  ", pugi::format_indent | pugi::format_no_declaration);
   return out.str();

@@ -14,7 +14,6 @@
 #include <unistd.h>
 
 #include "harness/report/conclusion.hpp"
-#include "harness/report/diagnosis_text.hpp"
 #include "harness/report/document.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/matrix.hpp"
@@ -136,22 +135,14 @@ std::string counted_apart(const RunResult& run) {
 }
 
 std::string_view plural_of(Quantity quantity) {
-  switch (quantity) {
-    case Quantity::rate:
-      return "rates";
-    case Quantity::control:
-      return "controls";
-    case Quantity::integral:
-      return "integrals";
-    case Quantity::thrust:
-      return "thrust";
-    case Quantity::motor:
-      return "motors";
-    case Quantity::scale:
-      return "scale";
-    default:
-      return "others";
+  constexpr std::pair<Quantity, std::string_view> names[] = {
+      {Quantity::rate, "rates"},         {Quantity::control, "controls"},
+      {Quantity::integral, "integrals"}, {Quantity::thrust, "thrust"},
+      {Quantity::motor, "motors"},       {Quantity::scale, "scale"}};
+  for (const auto& [known, name] : names) {
+    if (known == quantity) return name;
   }
+  return "others";
 }
 
 Quantity quantity_of(const VectorResult& result) {
@@ -230,21 +221,9 @@ std::string matrices(const RunResult& run, TerminalStyle style) {
   return is_plain ? out : out + "n/m: n of m vectors passed; +k: k counted apart\n\n";
 }
 
-Colour colour_of(Conclusion conclusion) {
-  switch (conclusion) {
-    case Conclusion::pass:
-      return Colour::green;
-    case Conclusion::fail:
-      return Colour::red;
-    case Conclusion::none:
-      break;
-  }
-  return Colour::yellow;
-}
-
 std::string verdict_line(const RunResult& run, double wall_s, TerminalStyle style) {
-  const Conclusion conclusion = conclusion_of(run);
-  return fmt::format("{} {}\n", painted(name_of(conclusion), colour_of(conclusion), style),
+  const Verdict conclusion = conclusion_of(run);
+  return fmt::format("{} {}\n", painted(outcome_of(conclusion), colour_of(conclusion), style),
                      conclusion_text(run, fmt::format(" in {:.1f} s", wall_s)));
 }
 

@@ -4,17 +4,35 @@
 #include <fmt/ranges.h>
 #include <kainjow/mustache.hpp>
 
+#include "harness/core/embed.hpp"
 #include "harness/core/file.hpp"
 #include "harness/report/document.hpp"
-#include "harness/report/html/base64.hpp"
-#include "harness/report/html/embedded.hpp"
 #include "harness/report/html/plot_data.hpp"
 #include "harness/report/text.hpp"
+
+ATTEST_EMBED(page_template, ATTEST_PAGE_TEMPLATE);
+ATTEST_EMBED(page_style, ATTEST_PAGE_STYLE);
+ATTEST_EMBED(results_style, ATTEST_RESULTS_STYLE);
+ATTEST_EMBED(page_script, ATTEST_PAGE_SCRIPT);
+ATTEST_EMBED(details_script, ATTEST_DETAILS_SCRIPT);
+ATTEST_EMBED(plots_script, ATTEST_PLOTS_SCRIPT);
+ATTEST_EMBED(shared_script, ATTEST_SHARED_SCRIPT);
+ATTEST_EMBED(plot_page_script, ATTEST_PLOT_PAGE_SCRIPT);
+ATTEST_EMBED(replay_script, ATTEST_REPLAY_SCRIPT);
+ATTEST_EMBED(dygraphs_script, ATTEST_DYGRAPHS_SCRIPT);
+ATTEST_EMBED(dygraphs_style, ATTEST_DYGRAPHS_STYLE);
+ATTEST_EMBED(dygraphs_synchronizer, ATTEST_DYGRAPHS_SYNCHRONIZER);
+ATTEST_EMBED(dygraphs_licence, ATTEST_DYGRAPHS_LICENCE);
 
 namespace attest {
 namespace {
 
 using Values = kainjow::mustache::data;
+
+// Without the comment that names a source map: a browser's debugger would request that file.
+std::string_view without_source_map(std::string_view text) {
+  return text.substr(0, text.find("# sourceMappingURL=") - 2);
+}
 
 // Runs before the body is shown. The class `scripted` hides the table of all results, so that a
 // browser does not lay it out; page.js replaces it by a list.
@@ -72,12 +90,15 @@ std::string_view symbol_of(Verdict verdict) {
 // The styles, the scripts in the order in which they run, and the hashes of the scripts for the
 // content security policy. The first script is in the head, the last ones follow the data.
 void add_files(bool is_of_run, Values& page) {
-  std::vector<std::string_view> scripts = {dygraphs_script(), dygraphs_synchronizer(),
-                                           shared_script()};
+  std::vector<std::string_view> scripts = {without_source_map(ATTEST_EMBEDDED(dygraphs_script)),
+                                           ATTEST_EMBEDDED(dygraphs_synchronizer),
+                                           ATTEST_EMBEDDED(shared_script)};
   if (is_of_run)
-    scripts.insert(scripts.end(), {plots_script(), details_script(), page_script()});
+    scripts.insert(scripts.end(), {ATTEST_EMBEDDED(plots_script), ATTEST_EMBEDDED(details_script),
+                                   ATTEST_EMBEDDED(page_script)});
   else
-    scripts.insert(scripts.end(), {plot_page_script(), replay_script()});
+    scripts.insert(scripts.end(),
+                   {ATTEST_EMBEDDED(plot_page_script), ATTEST_EMBEDDED(replay_script)});
   std::string hashes = policy_hash(boot_script);
   for (const std::string_view script : scripts) hashes += " " + policy_hash(script);
   set_text(page, "boot", boot_script);
@@ -85,17 +106,14 @@ void add_files(bool is_of_run, Values& page) {
   page.set("scripts", list_of(scripts, [](std::string_view script) {
              return Values("script", Values(std::string(script)));
            }));
-  set_text(page, "style", page_style());
-  set_text(page, "results_style", results_style());
-  set_text(page, "dygraphs_style", dygraphs_style());
-  set_text(page, "dygraphs_licence", dygraphs_licence());
+  set_text(page, "style", ATTEST_EMBEDDED(page_style));
+  set_text(page, "results_style", ATTEST_EMBEDDED(results_style));
+  set_text(page, "dygraphs_style", without_source_map(ATTEST_EMBEDDED(dygraphs_style)));
+  set_text(page, "dygraphs_licence", ATTEST_EMBEDDED(dygraphs_licence));
 }
 
 void add_head(const DocumentHead& head, Values& page) {
-  set_text(page, "outcome",
-           head.verdict == Verdict::pass ? "PASS"
-           : fails_a_run(head.verdict)   ? "FAIL"
-                                         : "NONE");
+  set_text(page, "outcome", outcome_of(head.verdict));
   set_text(page, "conclusion_symbol", symbol_of(head.verdict));
   set_text(page, "word", one_line(head.word));
   set_text(page, "title", one_line(head.title));
@@ -206,7 +224,7 @@ std::string html_page(const Document& document) {
   } else {
     set_text(out, "plots", plot_data_json(document));
   }
-  kainjow::mustache::mustache page_of{std::string(page_template())};
+  kainjow::mustache::mustache page_of{std::string(ATTEST_EMBEDDED(page_template))};
   return page_of.render(out);
 }
 

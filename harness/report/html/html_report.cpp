@@ -1,6 +1,5 @@
-#include "harness/report/html/html_report.hpp"
-
 #include <algorithm>
+#include <cctype>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -9,11 +8,11 @@
 #include <fmt/ranges.h>
 
 #include "harness/report/conclusion.hpp"
-#include "harness/report/diagnosis_text.hpp"
 #include "harness/report/document.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/html/plots.hpp"
 #include "harness/report/matrix.hpp"
+#include "harness/report/report.hpp"
 #include "harness/report/statement.hpp"
 #include "harness/report/text.hpp"
 
@@ -51,7 +50,11 @@ std::vector<Section> sections_of(const Report& report) {
   const RunResult& run = report.run;
   std::vector<Section> sections;
   if (report.diagnosis) {
-    const auto lines = lines_of(diagnosis_text(*report.diagnosis));
+    auto lines = lines_of(diagnosis_text(*report.diagnosis));
+    for (std::string& line : lines) {
+      line = one_line(line);
+      line.front() = static_cast<char>(std::toupper(line.front()));
+    }
     sections.push_back({"Probable mistake", {lines.begin(), lines.end()}, true});
   }
   if (auto lines = failures_without_deviation(run); !lines.empty()) {
@@ -123,13 +126,9 @@ std::vector<Cell> row_of(const VectorResult& result, const RunResult& run) {
 // The page, with an empty element for the plots.
 Document run_document(const Report& report) {
   const RunResult& run = report.run;
-  const Conclusion conclusion = conclusion_of(run);
-  Document document;
-  document.head = {conclusion == Conclusion::pass   ? Verdict::pass
-                   : conclusion == Conclusion::fail ? Verdict::fail
-                                                    : Verdict::skip,
-                   std::string(name_of(conclusion)),
-                   fmt::format("{} {}", run.port_name, run.port_version), conclusion_text(run)};
+  const Verdict conclusion = conclusion_of(run);
+  Document document{{conclusion, std::string(outcome_of(conclusion)),
+                     fmt::format("{} {}", run.port_name, run.port_version), conclusion_text(run)}};
   for (const Error& error : run.errors) {
     document.notes.push_back({"error: " + error.to_string(), true});
   }

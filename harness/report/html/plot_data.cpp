@@ -2,15 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <iterator>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
-#include "harness/report/html/base64.hpp"
-#include "harness/report/html/curves.hpp"
-#include "harness/report/html/script_json.hpp"
+#include "harness/core/json_text.hpp"
 #include "harness/report/text.hpp"
 
 namespace attest {
@@ -132,7 +134,89 @@ json vehicle_to_json(const ReplayVehicle& vehicle) {
   return out;
 }
 
+// The ticks of [begin, end) where the value is smallest, largest and first NaN.
+void keep_extremes(std::size_t begin, std::size_t end, const std::vector<float>& values,
+                   std::vector<std::size_t>& kept) {
+  std::size_t low = end, high = end, nan = end;
+  for (std::size_t tick = begin; tick < end; ++tick) {
+    const float value = values[tick];
+    if (std::isnan(value)) {
+      if (nan == end) nan = tick;
+      continue;
+    }
+    if (low == end || value < values[low]) low = tick;
+    if (high == end || value > values[high]) high = tick;
+  }
+  for (const std::size_t tick : {low, high, nan}) {
+    if (tick != end) kept.push_back(tick);
+  }
+}
+
 }  // namespace
+
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  out.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const bool exists = k < count;
+      group = (group << 8) | (exists ? static_cast<std::uint8_t>(bytes[i + k]) : 0u);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      out += k <= count ? digits[(group >> (18 - 6 * k)) & 63u] : '=';
+    }
+  }
+  return out;
+}
+
+std::string base64(std::span<const float> numbers) {
+  std::string bytes;
+  bytes.reserve(4 * numbers.size());
+  for (const float number : numbers) {
+    const auto bits = std::bit_cast<std::uint32_t>(number);
+    for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>((bits >> shift) & 255u);
+  }
+  return base64(bytes);
+}
+
+std::string script_json(const nlohmann::json& value) {
+  std::string out;
+  for (const char c : text_of(value)) out += c == '<' ? "\\u003c" : std::string(1, c);
+  return out;
+}
+
+std::vector<std::size_t> extreme_ticks(std::span<const std::vector<float>> series,
+                                       std::size_t most) {
+  const std::size_t size = series.front().size();
+  std::vector<std::size_t> kept;
+  if (size <= most) {
+    kept.resize(size);
+    std::iota(kept.begin(), kept.end(), std::size_t{0});
+    return kept;
+  }
+  constexpr std::size_t kept_of_each = 3;  // smallest, largest, NaN
+  const std::size_t parts = std::max<std::size_t>(1, most / (kept_of_each * series.size()));
+  for (std::size_t part = 0; part < parts; ++part) {
+    for (const std::vector<float>& values : series) {
+      keep_extremes(part * size / parts, (part + 1) * size / parts, values, kept);
+    }
+  }
+  kept.insert(kept.end(), {0, size - 1});
+  std::sort(kept.begin(), kept.end());
+  kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+  return kept;
+}
+
+void keep_neighbours(std::size_t marked, std::size_t size, std::vector<std::size_t>& kept) {
+  for (std::size_t tick = marked > 0 ? marked - 1 : 0; tick <= marked + 1 && tick < size; ++tick) {
+    const auto place = std::lower_bound(kept.begin(), kept.end(), tick);
+    if (place == kept.end() || *place != tick) kept.insert(place, tick);
+  }
+}
 
 std::string plot_data_json(const Document& page) {
   json groups = json::array(), replay = json::array();

@@ -1,6 +1,9 @@
 #include "harness/report/html/plots.hpp"
 
 #include <algorithm>
+#include <array>
+#include <functional>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <utility>
@@ -9,9 +12,7 @@
 
 #include "harness/core/agreement.hpp"
 #include "harness/report/failure_text.hpp"
-#include "harness/report/html/base64.hpp"
-#include "harness/report/html/curves.hpp"
-#include "harness/report/html/script_json.hpp"
+#include "harness/report/html/plot_data.hpp"
 #include "harness/trace/csv.hpp"
 #include "harness/verify/saved_traces.hpp"
 
@@ -22,6 +23,30 @@ using nlohmann::json;
 
 constexpr std::size_t most_signals = 8;    // of a vector
 constexpr std::size_t most_points = 1200;  // of a curve (approximate); a plot has about 600 pixels
+
+// Without tolerance, by bits.
+bool agrees(float got, float want, float allowed) {
+  return allowed > 0 ? agree(got, want, allowed) : same_bits(got, want);
+}
+
+Curves curves_of(std::size_t index, const Trace& got, const Trace& want, const Trace* allowed) {
+  const Channel& channel = channels()[index];
+  const std::size_t ticks = std::min(got.samples.size(), want.samples.size());
+  Curves curves;
+  curves.channel = index;
+  for (std::size_t tick = 0; tick < ticks; ++tick) {
+    const auto value_in = [&](const Trace& trace) {
+      return static_cast<float>(value_of(channel, trace.samples[tick]));
+    };
+    curves.got.push_back(value_in(got));
+    curves.want.push_back(value_in(want));
+    const float tolerance = allowed ? value_in(*allowed) : 0;
+    if (allowed) curves.allowed.push_back(tolerance);
+    if (agrees(curves.got.back(), curves.want.back(), tolerance)) continue;
+    if (curves.deviating++ == 0) curves.first_tick = tick;
+  }
+  return curves;
+}
 
 struct Traces {
   Trace got, want;
@@ -95,6 +120,38 @@ json vector_to_json(const Traces& traces, const Deviation& first) {
 }
 
 }  // namespace
+
+std::vector<Curves> curves_of(const Trace& got, const Trace& want, const Trace* allowed) {
+  const bool is_cut_off = allowed && allowed->samples.size() < want.samples.size();
+  std::vector<Curves> all;
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    if (!channels()[i].is_output() || !got.present[i] || !want.present[i]) continue;
+    all.push_back(curves_of(i, got, want, is_cut_off ? nullptr : allowed));
+  }
+  return all;
+}
+
+std::vector<Curves> curves_to_plot(std::vector<Curves> curves, std::size_t first,
+                                   std::size_t most) {
+  std::erase_if(curves, [&](const Curves& one) {
+    return one.size() == 0 || (one.deviating == 0 && one.channel != first);
+  });
+  std::stable_sort(curves.begin(), curves.end(), [&](const Curves& a, const Curves& b) {
+    if ((a.channel == first) != (b.channel == first)) return a.channel == first;
+    return a.first_tick < b.first_tick;
+  });
+  if (curves.size() > most) curves.resize(most);
+  return curves;
+}
+
+std::vector<std::size_t> drawn_ticks(const Curves& curves, std::size_t marked, std::size_t most) {
+  std::array<std::vector<float>, 3> series{curves.got, curves.want, {}};
+  std::transform(curves.got.begin(), curves.got.end(), curves.want.begin(),
+                 std::back_inserter(series[2]), std::minus<>());
+  std::vector<std::size_t> kept = extreme_ticks(series, most);
+  keep_neighbours(marked, curves.size(), kept);
+  return kept;
+}
 
 std::vector<const VectorResult*> vectors_to_plot(const RunResult& run, std::size_t most) {
   struct Candidate {

@@ -1,4 +1,4 @@
-// The plots of failing vectors as JSON, for the script of the page.
+// The plots of failing vectors: their outputs as curves, and as JSON for the script of the page.
 #pragma once
 
 #include <cstddef>
@@ -6,9 +6,31 @@
 #include <string>
 #include <vector>
 
+#include "harness/trace/trace.hpp"
 #include "harness/verify/run_result.hpp"
 
 namespace attest {
+
+// One value per tick. `allowed` (the tolerance) is empty if it is not known.
+struct Curves {
+  std::size_t channel = 0;  // index into channels()
+  std::vector<float> got, want, allowed;
+  std::size_t deviating = 0;   // number of ticks at which got is outside the tolerance
+  std::size_t first_tick = 0;  // the first of these ticks; valid if deviating > 0
+
+  std::size_t size() const { return got.size(); }
+};
+
+// The outputs that both traces have, up to the end of the shorter trace. `allowed` is a trace as
+// allowed_deviations() makes it, or null. It is not used if it is shorter than `want`.
+std::vector<Curves> curves_of(const Trace& got, const Trace& want, const Trace* allowed);
+
+// Keeps the curves that deviate and the curve of channel `first`. The curve of `first` comes first,
+// the others by the tick at which they begin to deviate. Returns at most `most` curves.
+std::vector<Curves> curves_to_plot(std::vector<Curves> curves, std::size_t first, std::size_t most);
+
+// extreme_ticks() of got, want and their difference, with the neighbours of `marked`.
+std::vector<std::size_t> drawn_ticks(const Curves& curves, std::size_t marked, std::size_t most);
 
 inline constexpr std::size_t most_plotted_vectors = 100;
 

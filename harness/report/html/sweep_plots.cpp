@@ -11,7 +11,6 @@
 
 #include <fmt/format.h>
 
-#include "harness/report/html/plot_bounds.hpp"
 #include "harness/sweep/parse_dispersions.hpp"
 
 namespace attest {

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "harness/report/code_quality.hpp"
 #include "harness/report/github.hpp"
+#include "harness/report/report.hpp"
 #include "tests/harness/report/baseline.hpp"
 #include "tests/harness/report/sample_run.hpp"
 

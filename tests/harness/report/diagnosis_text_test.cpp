@@ -1,10 +1,8 @@
-#include "harness/report/diagnosis_text.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/report/html/html_report.hpp"
-#include "harness/report/junit.hpp"
+#include "harness/report/conclusion.hpp"
+#include "harness/report/report.hpp"
 #include "harness/report/terminal.hpp"
 #include "tests/harness/report/sample_run.hpp"
 
@@ -51,7 +49,7 @@ TEST(DiagnosisText, EndsWithThePurposeOfTheMostSpecificCase) {
   EXPECT_THAT(junit_report(run, diagnosis), HasSubstr("it tests: A stick beyond &lt;1&gt;."));
   const std::string page = html_report({run, diagnosis, {}});
   EXPECT_THAT(page, HasSubstr("px4-v1.5.5/modes/acro"));
-  EXPECT_THAT(page, HasSubstr("it tests: A stick beyond &lt;1&gt;."));
+  EXPECT_THAT(page, HasSubstr("It tests: A stick beyond &lt;1&gt;."));
   EXPECT_THAT(page, HasSubstr("7 of 9 failing vectors deviate first in the rate law or the"));
   diagnosis.why.clear();  // the caller does not know the case
   EXPECT_THAT(diagnosis_text(diagnosis), Not(HasSubstr("it tests")));

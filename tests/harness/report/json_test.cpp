@@ -1,9 +1,8 @@
-#include "harness/report/json.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "harness/report/report.hpp"
 #include "tests/harness/report/baseline.hpp"
 #include "tests/harness/report/sample_run.hpp"
 

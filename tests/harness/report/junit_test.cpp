@@ -1,5 +1,3 @@
-#include "harness/report/junit.hpp"
-
 #include <set>
 
 #include <gmock/gmock.h>
@@ -7,6 +5,7 @@
 #include <pugixml.hpp>
 
 #include "harness/report/failure_text.hpp"
+#include "harness/report/report.hpp"
 #include "harness/report/text.hpp"
 #include "tests/harness/report/baseline.hpp"
 #include "tests/harness/report/sample_run.hpp"

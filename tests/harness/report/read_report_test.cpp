@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/report/json.hpp"
+#include "harness/report/report.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
 #include "tests/harness/report/sample_run.hpp"
 

@@ -1,5 +1,3 @@
-#include "harness/report/html/base64.hpp"
-
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -7,6 +5,8 @@
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
+
+#include "harness/report/html/plot_data.hpp"
 
 namespace attest {
 namespace {

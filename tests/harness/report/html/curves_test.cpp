@@ -1,5 +1,3 @@
-#include "harness/report/html/curves.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
+
+#include "harness/report/html/plot_data.hpp"
+#include "harness/report/html/plots.hpp"
 
 namespace attest {
 namespace {

@@ -1,11 +1,9 @@
-#include "harness/report/html/flight_page.hpp"
-
 #include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/report/html/flight_plots.hpp"
+#include "harness/report/flight_document.hpp"
 #include "tests/harness/report/sample_run.hpp"
 
 namespace attest {
@@ -34,10 +32,12 @@ Flown two_ticks() {
 
 // The plot of that title, of one flight, or of the same flight on two plants.
 Plot plot(const std::string& title, bool two_plants = false) {
-  const Flown flown = two_ticks();
-  const auto flights = two_plants ? std::vector<NamedFlight>{{"mujoco", &flown}, {"ode", &flown}}
-                                  : std::vector<NamedFlight>{{"", &flown}};
-  for (const Plot& one : flight_plots(flights).plots) {
+  SimulatedFlight mujoco{passed("flight", "hover", Rate::hz(250)), two_ticks()}, ode = mujoco;
+  mujoco.result.plant_configuration = PlantConfiguration{"iris", PlantKind::mujoco};
+  ode.result.plant_configuration = PlantConfiguration{"iris", PlantKind::ode};
+  const auto flights = two_plants ? std::vector{mujoco, ode} : std::vector{mujoco};
+  const Document document = flight_document(flights, {});
+  for (const Plot& one : document.groups.front().plots) {
     if (one.title == title) return one;
   }
   return {};
@@ -74,8 +74,8 @@ TEST(FlightPlots, TwoPlantsAreInOnePlotWithOneSetpoint) {
 }
 
 TEST(FlightPlots, TheReplayHasTheQuaternions) {
-  const Flown flown = two_ticks();
-  const auto replay = replay_of({{"", &flown}});
+  const SimulatedFlight flight{passed("flight", "hover", Rate::hz(250)), two_ticks()};
+  const auto replay = flight_document({flight}, {}).replay;
   ASSERT_EQ(replay.size(), 1u);
   EXPECT_THAT(replay[0].times, ElementsAre(0, 0.004f));
   EXPECT_THAT(replay[0].attitude[1], ElementsAre(0, std::sqrt(0.5f)));
@@ -87,14 +87,13 @@ TEST(FlightPage, HasTheVerdictAndTheMetrics) {
   flight.result.metrics = {{"levels", Measure::settling_time_s, 3.5, 3.5, 0, 0, 2}};
   Declarations port;
   port.name = "<b>acme</b>";
-  const std::string page = flight_page({flight}, port);
+  const std::string page = html_page(flight_document({flight}, port));
   EXPECT_THAT(page, HasSubstr("</span> fail</p>"));
   EXPECT_THAT(page, HasSubstr("&lt;b&gt;acme&lt;/b&gt;"));
   EXPECT_THAT(page, Not(HasSubstr("<b>acme")));
-  EXPECT_THAT(page, HasSubstr("levels<br><small>settling_time_s</small></th>"
-                              "<td class=\"number\">3.5</td>"
-                              "<td class=\"v-fail\"><b>\u2717</b> missed<br>"
-                              "<small>0 to 2</small></td>"));
+  EXPECT_THAT(page, HasSubstr("levels</th><td class=\"\">settling_time_s</td>"
+                              "<td class=\"number\">3.5</td><td class=\"number\">0 to 2</td>"
+                              "<td class=\"v-fail\"><b>\u2717</b> missed</td>"));
 }
 
 TEST(FlightPage, TwoPlantsHaveAColumnEachAndTheWorseVerdict) {
@@ -105,17 +104,17 @@ TEST(FlightPage, TwoPlantsHaveAColumnEachAndTheWorseVerdict) {
   ode.result.metrics = {{"levels", Measure::settling_time_s, 3.5, 3.5, 0, 0, 2}};
   ode.result.verdict = Verdict::fail;
   ode.result.reason = "levels";
-  const std::string page = flight_page({mujoco, ode}, {});
+  const std::string page = html_page(flight_document({mujoco, ode}, {}));
   EXPECT_THAT(page, HasSubstr("</span> fail</p>"));
   EXPECT_THAT(page, HasSubstr("<p class=\"error\">ode: levels</p>"));
   EXPECT_THAT(page, HasSubstr("<td class=\"number\">1.5</td><td class=\"number\">3.5</td>"
-                              "<td class=\"v-fail\">"));
+                              "<td class=\"number\">0 to 2</td><td class=\"v-fail\">"));
   EXPECT_THAT(page, HasSubstr("\"name\":\"roll (ode)\""));
 }
 
 TEST(FlightPage, WithoutATickHasNoPlots) {
   const SimulatedFlight crashed{passed("flight", "hover", Rate::hz(250)), {}};
-  EXPECT_THAT(flight_page({crashed}, {}), Not(HasSubstr("id=\"plots-of-page\"")));
+  EXPECT_THAT(html_page(flight_document({crashed}, {})), Not(HasSubstr("id=\"plots-of-page\"")));
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/report/document.hpp"
-#include "harness/report/html/base64.hpp"
 #include "harness/report/html/plot_data.hpp"
 
 namespace attest {

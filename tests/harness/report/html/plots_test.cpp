@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "harness/report/html/base64.hpp"
+#include "harness/report/html/plot_data.hpp"
 #include "harness/verify/saved_traces.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
 #include "tests/harness/report/sample_run.hpp"

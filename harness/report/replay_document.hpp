@@ -1,4 +1,4 @@
-// The results of `attest replay` for machines:
+// The report of `attest replay`. For machines:
 //
 //     {"schema": "attest-replay-1", "attest_version": "0.1.0", "port": "builtin",
 //      "level": "numeric",
@@ -24,13 +24,30 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "harness/compare/log_agreement.hpp"
+#include "harness/report/document.hpp"
 #include "harness/trace/module.hpp"
 #include "harness/ulog/flight_log.hpp"
 #include "harness/verify/evaluate_log.hpp"
 #include "harness/verify/verdict.hpp"
 
 namespace attest {
+
+// "flight.ulg"; for a unit of v1.14 to v1.16 "flight.ulg: attitude unit".
+std::string title_of(const LoggedUnit& log);
+
+// The agreement of each topic of a unit. The lines below the table say how many of the deviations
+// are explained.
+DocumentTable unit_table(const LoggedUnit& unit, const LogResult& result, const LogLimits& limits);
+
+// A port compared with a log: the agreement of each unit, and a plot of each output of port and
+// log. REQUIRES: a result for each unit.
+Document log_document(const FlightLog& log, const std::vector<LogResult>& results,
+                      const LogLimits& limits, const std::string& port);
+
+// A port compared with a trace: the first and the worst deviation, and a plot of each output of
+// port and trace.
+Document trace_document(const Trace& want, const Trace& got, const VectorResult& result,
+                        const std::string& port);
 
 nlohmann::ordered_json json_of_trace(const VectorResult& result, Module module);
 // REQUIRES: `result` is that of `unit`, which is a unit of `log`.

@@ -1,4 +1,4 @@
-#include "harness/report/html/flight_plots.hpp"
+#include "harness/report/flight_document.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,15 +6,26 @@
 #include <cstdint>
 #include <functional>
 #include <numbers>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "harness/report/failure_text.hpp"
 #include "harness/trace/plant_columns.hpp"
 
 namespace attest {
 namespace {
 
-constexpr std::size_t most_frames = 2000;  // of the animation
+// REQUIRES: a flight with at least one tick of each unit.
+struct NamedFlight {
+  std::string name;  // the name of the plant; empty for a single flight
+  const Flown* flown;
+};
+
+constexpr std::size_t most_frames = 2000;  // of the animation, evenly spaced
 
 // The values of the column `name`: of a channel, or else of the plant.
 std::vector<float> column(const Trace& flown, std::string_view name) {
@@ -176,9 +187,9 @@ LawColumns columns_of_law(Module module) {
           "Saturation of the mixer"};
 }
 
-}  // namespace
-
-PlotGroup flight_plots(const std::vector<NamedFlight>& flights) {
+// Lines are named after the columns of the trace, or roll, pitch and yaw. Setpoints are those of
+// the first flight. REQUIRES: at least one flight.
+PlotGroup plots_of(const std::vector<NamedFlight>& flights) {
   const auto attitude = [](const Flown& flown) {
     return angles(quaternions(flown.trace, "plant/vehicle_attitude.q"), "");
   };
@@ -204,10 +215,71 @@ PlotGroup flight_plots(const std::vector<NamedFlight>& flights) {
   return group;
 }
 
-std::vector<ReplayVehicle> replay_of(const std::vector<NamedFlight>& flights) {
-  std::vector<ReplayVehicle> vehicles;
-  for (const NamedFlight& flight : flights) vehicles.push_back(replay_of(flight));
-  return vehicles;
+std::string plant_of(const SimulatedFlight& flight) {
+  const auto& configuration = flight.result.plant_configuration;
+  return configuration ? std::string(name_of(configuration->plant)) : "";
+}
+
+// A flight in which the port fails may have no metrics, so the rows are those of the flight with
+// the most metrics.
+DocumentTable metrics_table(const std::vector<SimulatedFlight>& flights) {
+  const auto most = std::max_element(flights.begin(), flights.end(),
+                                     [](const SimulatedFlight& a, const SimulatedFlight& b) {
+                                       return a.result.metrics.size() < b.result.metrics.size();
+                                     });
+  DocumentTable table{"Metrics of the flight", {"metric", "measure"}};
+  for (const SimulatedFlight& flight : flights) {
+    table.header.push_back(flights.size() > 1 ? plant_of(flight) : "value");
+  }
+  table.header.insert(table.header.end(), {"bounds", ""});
+  for (std::size_t i = 0; i < most->result.metrics.size(); ++i) {
+    const MetricResult& metric = most->result.metrics[i];
+    std::vector<Cell> row = {metric.name, std::string(name_of(metric.measure))};
+    bool all_within = true;
+    for (const SimulatedFlight& flight : flights) {
+      const auto& metrics = flight.result.metrics;
+      const bool is_known = i < metrics.size();
+      row.emplace_back(is_known ? fmt::format("{:.4g}", metrics[i].value) : "-");
+      all_within = all_within && is_known && metrics[i].within();
+    }
+    row.emplace_back(metric_bounds(metric));
+    row.emplace_back(all_within ? "within" : "missed", all_within ? Verdict::pass : Verdict::fail);
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+DocumentHead head_of(const std::vector<SimulatedFlight>& flights, const Declarations& port) {
+  const auto failed = std::find_if(
+      flights.begin(), flights.end(),
+      [](const SimulatedFlight& flight) { return flight.result.verdict != Verdict::pass; });
+  const VectorResult& result = (failed == flights.end() ? flights.front() : *failed).result;
+  std::string title = flights.front().result.id();
+  for (std::size_t i = 1; i < flights.size(); ++i) title += " and on " + plant_of(flights[i]);
+  return {result.verdict, std::string(name_of(result.verdict)), std::move(title),
+          fmt::format("{} {}, {} ticks", port.name, port.version, flights.front().result.ticks)};
+}
+
+}  // namespace
+
+Document flight_document(const std::vector<SimulatedFlight>& flights, const Declarations& port) {
+  Document document{head_of(flights, port)};
+  document.tables = {metrics_table(flights)};
+  if (document.tables.front().rows.empty()) document.tables.clear();
+  std::vector<NamedFlight> flown;
+  for (const SimulatedFlight& flight : flights) {
+    const std::string plant = flights.size() > 1 ? plant_of(flight) : "";
+    const std::string& reason = flight.result.reason;
+    if (!reason.empty()) {
+      document.notes.push_back(
+          {plant.empty() ? reason : fmt::format("{}: {}", plant, reason), true});
+    }
+    if (!flight.flown.trace.samples.empty()) flown.push_back({plant, &flight.flown});
+  }
+  if (flown.empty()) return document;
+  document.groups = {plots_of(flown)};
+  for (const NamedFlight& flight : flown) document.replay.push_back(replay_of(flight));
+  return document;
 }
 
 }  // namespace attest

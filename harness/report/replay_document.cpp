@@ -1,0 +1,281 @@
+#include "harness/report/replay_document.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "harness/core/json_reader.hpp"
+#include "harness/core/json_text.hpp"
+#include "harness/core/version.hpp"
+#include "harness/report/failure_text.hpp"
+#include "harness/trace/output_topics.hpp"
+#include "harness/verify/verdict_json.hpp"
+
+namespace attest {
+namespace {
+
+// One output in both traces, each at the ticks that published the output.
+Plot plot_of_output(std::size_t index, const Channel& published, const Trace& want,
+                    const Trace& got, const char* name_of_want) {
+  const Channel& channel = channels()[index];
+  Plot plot{std::string(channel.name), std::string(unit_of(channel.quantity))};
+  plot.series = {{name_of_want, {}, {}}, {"got", {}, {}}};
+  plot.series[1].pattern = LinePattern::dashed;
+  const auto add = [&](const Trace& trace, PlotSeries& series) {
+    for (const Sample& sample : trace.samples) {
+      if (value_of(published, sample) == 0) continue;
+      const auto elapsed_us = sample.in.timestamp - want.samples.front().in.timestamp;
+      series.x.push_back(1e-6 * static_cast<double>(elapsed_us));
+      series.y.push_back(float_of(channel, sample));
+    }
+  };
+  add(want, plot.series[0]);
+  add(got, plot.series[1]);
+  return plot;
+}
+
+// The float32 outputs that `want` has, of topics with a flag `published`.
+PlotGroup plots_of_outputs(const Trace& want, const Trace& got, const char* name_of_want,
+                           std::string caption = "Outputs") {
+  PlotGroup group{std::move(caption), "time from the first sample [s]", {}};
+  const Module module = module_of(want.present);
+  const ChannelSet outputs = channels_of(module, "out/") & want.present;
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    if (!outputs[i] || channels()[i].type != ChannelType::f32) continue;
+    const auto published = published_flag(channels()[i]);
+    if (!published) continue;
+    group.plots.push_back(plot_of_output(i, channels()[*published], want, got, name_of_want));
+  }
+  return group;
+}
+
+std::string deviation_text(const std::optional<Deviation>& deviation) {
+  if (!deviation) return "";
+  const Channel& channel = channels()[deviation->channel];
+  return fmt::format("tick {}, {}: got {}, want {}", deviation->tick, channel_with_unit(channel),
+                     value_text(channel, deviation->got), value_text(channel, deviation->want));
+}
+
+// "97.6%", of the paired samples.
+std::string part_text(std::size_t count, const TopicAgreement& topic) {
+  const auto paired = static_cast<double>(std::max<std::size_t>(topic.paired, 1));
+  return fmt::format("{:.1f}%", 100 * static_cast<double>(count) / paired);
+}
+
+std::vector<Cell> row_of(const TopicAgreement& topic, const LoggedOutput& logged,
+                         const LogLimits& limits) {
+  const Cell verdict = topic.not_judged.empty()
+                           ? Cell(topic.agrees(limits) ? "agrees" : "differs",
+                                  topic.agrees(limits) ? Verdict::pass : Verdict::fail)
+                           : Cell("not judged");
+  return {std::string(topic.topic),
+          verdict,
+          fmt::format("{} of {}", topic.paired, logged.samples),
+          fmt::format("{:.3g}", topic.median),
+          fmt::format("{:.3g}", topic.p90),
+          fmt::format("{:.3g}", topic.p99),
+          fmt::format("{:.3g}", topic.largest),
+          part_text(topic.within, topic),
+          part_text(topic.between_samples, topic),
+          part_text(topic.unexplained(), topic)};
+}
+
+// The lines about a topic. `said`: the reason of the verdict, which is not repeated.
+void add_lines(const LoggedUnit& unit, const TopicAgreement& topic, const LoggedOutput& logged,
+               const LogLimits& limits, const std::string& said, std::vector<Cell>& lines) {
+  const auto add = [&]<typename... T>(fmt::format_string<T...> text, T&&... values) {
+    lines.emplace_back(fmt::format(text, std::forward<T>(values)...));
+  };
+  const auto add_part = [&](std::size_t count, const std::string& what) {
+    add("  {:6} {:>6}  {}", count, part_text(count, topic), what);
+  };
+  add("{}: {} of {} logged samples paired with a {}", topic.topic, logged.paired, logged.samples,
+      unit.step_topic);
+  if (topic.left_out > 0) {
+    add("  {} of them left out: the log does not have all that they depend on", topic.left_out);
+  }
+  if (topic.paired > 0) {
+    add("  off by: median {:.3g}, 90% up to {:.3g}, 99% up to {:.3g}, largest {:.3g}", topic.median,
+        topic.p90, topic.p99, topic.largest);
+    add_part(topic.within, fmt::format("within {:g}", limits.within));
+  }
+  if (topic.within != topic.paired) {
+    add_part(topic.between_samples,
+             "explained: port and log are within the reference's values at this and the two "
+             "neighbouring samples");
+    add_part(topic.unexplained(), "not explained");
+    if (topic.missing > 0) add_part(topic.missing, "not published by the port");
+    if (topic.non_finite > 0) {
+      add_part(topic.non_finite, "NaN or infinity where the log has a number");
+    }
+  }
+  if (!topic.not_judged.empty()) {
+    add("  not judged{}{}", topic.not_judged == said ? "" : ": ",
+        topic.not_judged == said ? "" : topic.not_judged);
+  } else if (const auto& pair = topic.first_unexplained) {
+    const Channel& channel = channels()[pair->channel];
+    add("  first one not explained: tick {}, {:.3f} s after tick 0, in {}", pair->tick,
+        pair->after_s, channel_with_unit(channel));
+    add("    got    {}", value_text(channel, pair->got));
+    add("    logged {}", value_text(channel, pair->logged));
+  }
+}
+
+// The first verdict that fails a run; else a pass if there is one; else that of the first unit.
+Verdict worst_of(const std::vector<LogResult>& results) {
+  Verdict worst = results.front().result.verdict;
+  for (const LogResult& one : results) {
+    const Verdict verdict = one.result.verdict;
+    if (fails_a_run(verdict)) return verdict;
+    if (verdict == Verdict::pass) worst = verdict;
+  }
+  return worst;
+}
+
+using nlohmann::ordered_json;
+
+ordered_json entry_of(const VectorResult& result, Module module, const char* kind) {
+  return {{"file", result.name},
+          {"kind", kind},
+          {"module", name_of(module)},
+          {"profile", result.profile},
+          {"verdict", name_of(result.verdict)},
+          {"reason", result.reason},
+          {"ticks", result.ticks}};
+}
+
+ordered_json pair_of(const LoggedPair& pair) {
+  return {{"tick", pair.tick},
+          {"timestamp_us", pair.timestamp_us},
+          {"channel", channels()[pair.channel].name},
+          {"got", json_of(pair.got)},
+          {"logged", json_of(pair.logged)}};
+}
+
+ordered_json topic_of(const TopicAgreement& topic, const LoggedOutput& logged,
+                      const LogLimits& limits) {
+  ordered_json out = {{"topic", topic.topic},
+                      {"judged", topic.not_judged.empty()},
+                      {"not_judged", topic.not_judged},
+                      {"agrees", topic.agrees(limits)},
+                      {"logged", logged.samples},
+                      {"paired", logged.paired},
+                      {"left_out", topic.left_out},
+                      {"within", topic.within},
+                      {"between_samples", topic.between_samples},
+                      {"unexplained", topic.unexplained()},
+                      {"missing", topic.missing},
+                      {"non_finite", topic.non_finite},
+                      {"median", json_of(topic.median)},
+                      {"p90", json_of(topic.p90)},
+                      {"p99", json_of(topic.p99)},
+                      {"largest", json_of(topic.largest)}};
+  if (topic.first_unexplained) out["first_unexplained"] = pair_of(*topic.first_unexplained);
+  return out;
+}
+
+}  // namespace
+
+std::string title_of(const LoggedUnit& log) {
+  if (log.module == Module::mc_att_control) return log.trace.source;
+  return fmt::format("{}: {}", log.trace.source, info_of(log.module).title);
+}
+
+DocumentTable unit_table(const LoggedUnit& unit, const LogResult& result, const LogLimits& limits) {
+  DocumentTable table{
+      fmt::format("How far the port is from the log: {}", info_of(unit.module).title),
+      {"topic", "", "paired", "median", "90%", "99%", "largest", "within", "between samples",
+       "not explained"}};
+  table.rows_in_text = 0;
+  for (std::size_t i = 0; i < result.topics.size(); ++i) {
+    table.rows.push_back(row_of(result.topics[i], unit.outputs[i], limits));
+    add_lines(unit, result.topics[i], unit.outputs[i], limits, result.result.reason, table.below);
+  }
+  return table;
+}
+
+Document log_document(const FlightLog& log, const std::vector<LogResult>& results,
+                      const LogLimits& limits, const std::string& port) {
+  Document document;
+  const Verdict verdict = worst_of(results);
+  std::vector<std::string> ticks;
+  document.facts = {{"agreement", fmt::format("at least {:g}% of the samples within {:g}, at most "
+                                              "{:g}% not explained",
+                                              100 * limits.least_part_within, limits.within,
+                                              100 * limits.most_unexplained)}};
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const LoggedUnit& unit = log.units[i];
+    const VectorResult& result = results[i].result;
+    const std::string title(info_of(unit.module).title);
+    ticks.push_back(fmt::format("{} ticks", unit.trace.samples.size()));
+    document.facts.push_back({title, std::string(name_of(result.verdict))});
+    if (!result.reason.empty()) {
+      document.notes.push_back({title + ": " + result.reason, fails_a_run(result.verdict)});
+    }
+    if (!results[i].topics.empty()) document.tables.push_back(unit_table(unit, results[i], limits));
+    if (unit.trace.samples.empty()) continue;
+    document.groups.push_back(plots_of_outputs(unit.trace, results[i].got, "logged",
+                                               fmt::format("Outputs of the {}", title)));
+  }
+  document.head = {verdict, std::string(name_of(verdict)), log.units.front().trace.source,
+                   fmt::format("{}, {}, {}", port, log.profile, fmt::join(ticks, " and "))};
+  for (const std::string& note : log.notes) document.notes.push_back({note});
+  return document;
+}
+
+Document trace_document(const Trace& want, const Trace& got, const VectorResult& result,
+                        const std::string& port) {
+  Document document;
+  document.head = {result.verdict, std::string(name_of(result.verdict)), want.source,
+                   fmt::format("{}, {}, {} ticks", port, result.profile, want.samples.size())};
+  if (!result.reason.empty()) document.notes.push_back({result.reason, true});
+  document.facts = {{"first deviation", deviation_text(result.first)},
+                    {"worst deviation", deviation_text(result.worst)}};
+  PlotGroup outputs = plots_of_outputs(want, got, "want");
+  if (result.first) {
+    const double first_s =
+        1e-6 * static_cast<double>(result.first->timestamp_us - want.samples.front().in.timestamp);
+    for (Plot& plot : outputs.plots) plot.marks = {{first_s, "first deviation"}};
+  }
+  if (!outputs.plots.empty()) document.groups = {std::move(outputs)};
+  return document;
+}
+
+ordered_json json_of_trace(const VectorResult& result, Module module) {
+  ordered_json entry = entry_of(result, module, "trace");
+  const nlohmann::json all = to_json(result);
+  for (const char* key : {"deviating_ticks", "first", "worst", "tightest"}) {
+    if (all.contains(key)) entry[key] = all[key];
+  }
+  return entry;
+}
+
+ordered_json json_of_unit(const FlightLog& log, const LoggedUnit& unit, const LogResult& result,
+                          const LogLimits& limits) {
+  ordered_json entry = entry_of(result.result, unit.module, "log");
+  entry["has_every_step"] = unit.has_every_step;
+  entry["topics"] = ordered_json::array();
+  for (std::size_t i = 0; i < result.topics.size(); ++i) {
+    entry["topics"].push_back(topic_of(result.topics[i], unit.outputs[i], limits));
+  }
+  entry["notes"] = log.notes;
+  return entry;
+}
+
+std::string replay_json(const std::string& port, std::string_view level, const LogLimits& limits,
+                        const std::vector<ordered_json>& results) {
+  return document_of({{"schema", "attest-replay-1"},
+                      {"attest_version", version},
+                      {"port", port},
+                      {"level", level},
+                      {"log_limits",
+                       {{"within", limits.within},
+                        {"least_part_within", limits.least_part_within},
+                        {"most_unexplained", limits.most_unexplained}}},
+                      {"results", results}});
+}
+
+}  // namespace attest
