@@ -126,7 +126,7 @@ int compare_by_time(const CompareOptions& options, Level level, bool quiet) {
   if (!found.agrees() || !quiet) {
     const DocumentHead& head = document.head;
     fmt::print("{}: {}: {}\n{}", head.word, head.title, head.sentence,
-               text_of(document.tables.front(), {}));
+               render_text(document.tables.front(), {}));
   }
   return found.agrees() ? exit_ok : exit_failed;
 }

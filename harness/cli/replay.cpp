@@ -172,7 +172,7 @@ class Replay {
     entries_.push_back(json_of_unit(log, unit, found, options_.log_limits));
     if (found.result.verdict == Verdict::pass && globals_.quiet) return {};
     print_result(found.result, title_of(unit), "log", out_);
-    fmt::print(out_, "{}", text_of(unit_table(unit, found, options_.log_limits), {}));
+    fmt::print(out_, "{}", render_text(unit_table(unit, found, options_.log_limits), {}));
     return {};
   }
 

@@ -184,7 +184,7 @@ int sim_command(const SimOptions& options, const Globals& globals) {
     any_fails = any_fails || fails_a_run(verdict);
   }
   if (any_shown) {
-    for (const DocumentTable& table : document.tables) fmt::print(to, "{}", text_of(table, {}));
+    for (const DocumentTable& table : document.tables) fmt::print(to, "{}", render_text(table, {}));
   }
   if (!any_result) return report_error({"the port did not fly: no flight has a result"});
   return any_fails ? exit_failed : exit_ok;

@@ -185,7 +185,7 @@ Result<void> run_all(const StressPlan& plan, const StressOptions& options, const
     for (StressResult& stress : *results) {
       stress.cyclictest = judge;
       const bool shown = !globals.quiet || stress.result.verdict != Verdict::pass;
-      if (shown) fmt::print("{}", text_of(result_table(stress), style));
+      if (shown) fmt::print("{}", render_text(result_table(stress), style));
       run.results.push_back(std::move(stress));
     }
     std::fflush(stdout);
@@ -232,7 +232,7 @@ int stress_command(const StressOptions& options, const Globals& globals) {
                               has_page ? html->commit(html_page(document)) : Result<void>()}) {
     if (!written) return report_error(written.error());
   }
-  if (!globals.quiet) fmt::print("{}", text_of(document.head, terminal_style(stdout)));
+  if (!globals.quiet) fmt::print("{}", render_text(document.head, terminal_style(stdout)));
   if (run.interrupted) return exit_interrupted;
   if (all.failed()) return exit_failed;
   if (const auto missing = rates_not_judged(run); !missing.empty()) {

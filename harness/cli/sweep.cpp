@@ -125,7 +125,7 @@ Result<SweepSummary> report(const PreparedSweep& sweep, const SweepOptions& opti
   if (!options.html.empty()) {
     if (auto done = html.commit(html_page(document)); !done) return tl::unexpected(done.error());
   }
-  if (!quiet) fmt::print("{}", text_of(document, terminal_style(stdout)));
+  if (!quiet) fmt::print("{}", render_text(document, terminal_style(stdout)));
   return summary;
 }
 

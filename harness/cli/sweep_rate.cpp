@@ -128,7 +128,7 @@ int sweep_rate_command(const RateSweepOptions& options, const Globals& globals) 
       return report_error(written.error());
     }
   }
-  if (!globals.quiet) fmt::print("{}", text_of(document, terminal_style(stdout)));
+  if (!globals.quiet) fmt::print("{}", render_text(document, terminal_style(stdout)));
   return fails_a_run(document.head.verdict) ? exit_failed : exit_ok;
 }
 

@@ -97,7 +97,7 @@ int report(const TimeCommandOptions& options, const TimeRun& run, const Document
            bool quiet) {
   const bool failed = fails_a_run(document.head.verdict);
   if (quiet && !failed) return exit_ok;
-  fmt::print("{}{}", text_of(document, terminal_style(stdout)), exchange_note(run.port));
+  fmt::print("{}{}", render_text(document, terminal_style(stdout)), exchange_note(run.port));
   const std::string worst = options.measure.worst.string();
   if (!worst.empty()) {
     fmt::print("the slowest step again: attest replay {} --profile {}\n", worst,
@@ -112,7 +112,7 @@ int report_untimed(const TimeRun& run) {
   if (!fails_a_run(document.head.verdict)) {
     return report_error({"no vector was timed: every selected vector was skipped or unsupported"});
   }
-  fmt::print("{}", text_of(document, terminal_style(stdout)));
+  fmt::print("{}", render_text(document, terminal_style(stdout)));
   return exit_failed;
 }
 

@@ -25,7 +25,7 @@ struct TextColumn {
   std::size_t width = 0;
 };
 
-std::string text_of(const Cell& cell, std::string_view unit) {
+std::string cell_text(const Cell& cell, std::string_view unit) {
   std::string out = cell.time ? human_time(*cell.time) : one_line(cell.text);
   if (!cell.time && !unit.empty() && begins_with_number(out)) out += fmt::format(" {}", unit);
   return cell.small.empty() ? out : fmt::format("{} ({})", out, one_line(cell.small));
@@ -44,7 +44,7 @@ TextColumn column_of(const DocumentTable& table, std::size_t column) {
   TextColumn out{{std::string(name)}, is_numeric(table, column), name.size()};
   for (std::size_t i = 0; i < rows_in_text(table); ++i) {
     const std::vector<Cell>& row = table.rows[i];
-    out.texts.push_back(column < row.size() ? text_of(row[column], unit) : "");
+    out.texts.push_back(column < row.size() ? cell_text(row[column], unit) : "");
     out.width = std::max(out.width, out.texts.back().size());
   }
   return out;
@@ -137,7 +137,7 @@ bool is_numeric(const DocumentTable& table, std::size_t column) {
          });
 }
 
-std::string text_of(const DocumentTable& table, TerminalStyle style) {
+std::string render_text(const DocumentTable& table, TerminalStyle style) {
   std::string out;
   const bool has_rows = rows_in_text(table) > 0;
   const bool has_caption = !table.caption.empty() && table.rows_in_text > 0;
@@ -159,7 +159,7 @@ std::string text_of(const DocumentTable& table, TerminalStyle style) {
   return out;
 }
 
-std::string text_of(const DocumentHead& head, TerminalStyle style) {
+std::string render_text(const DocumentHead& head, TerminalStyle style) {
   std::string word = head.word;
   for (char& letter : word) letter = static_cast<char>(std::toupper(letter));
   return fmt::format("{}\n{}{}{}\n", one_line(head.title),
@@ -167,13 +167,13 @@ std::string text_of(const DocumentHead& head, TerminalStyle style) {
                      head.sentence.empty() ? "" : " ", one_line(head.sentence));
 }
 
-std::string text_of(const Document& document, TerminalStyle style) {
-  std::string out = text_of(document.head, style);
+std::string render_text(const Document& document, TerminalStyle style) {
+  std::string out = render_text(document.head, style);
   for (const Note& note : document.notes) {
     if (note.is_in_text) out += one_line(note.text) + "\n";
   }
   for (const DocumentTable& table : document.tables) {
-    if (const std::string text = text_of(table, style); !text.empty()) out += "\n" + text;
+    if (const std::string text = render_text(table, style); !text.empty()) out += "\n" + text;
   }
   return out;
 }

@@ -1,5 +1,5 @@
 // A report as a document: a conclusion, notes, facts, tables and plots. A command fills it in once;
-// text_of() makes the text for the terminal, and html_page() the page:
+// render_text() makes the text for the terminal, and html_page() the page:
 //
 //     Document document;
 //     document.head = {Verdict::fail, "differ", "got.csv and want.csv", "3 of 28 differ"};
@@ -10,7 +10,7 @@
 //     roll.series = {{"got.csv", got_s, got_values}, {"want.csv", want_s, want_values}};
 //     roll.series[1].pattern = LinePattern::dashed;
 //     document.groups = {{"Deviating signals", "time from the first sample [s]", {roll}}};
-//     fmt::print("{}", text_of(document, terminal_style(stdout)));
+//     fmt::print("{}", render_text(document, terminal_style(stdout)));
 //     write_file("page.html", html_page(document));
 #pragma once
 
@@ -170,9 +170,9 @@ double microseconds(Nanoseconds time);
 
 // The head, the notes and the tables. Ends with a newline. A table wider than `style` allows is
 // broken into several blocks of columns.
-std::string text_of(const Document& document, TerminalStyle style);
-std::string text_of(const DocumentHead& head, TerminalStyle style);  // "title\nPASS sentence\n"
-std::string text_of(const DocumentTable& table, TerminalStyle style);
+std::string render_text(const Document& document, TerminalStyle style);
+std::string render_text(const DocumentHead& head, TerminalStyle style);  // "title\nPASS sentence\n"
+std::string render_text(const DocumentTable& table, TerminalStyle style);
 
 // The bounds of a metric, for a PlotBand of a plot with these series. An infinite bound is drawn at
 // the outermost value of the series, or at the other bound if that is farther out.

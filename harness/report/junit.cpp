@@ -9,6 +9,7 @@
 
 #include "harness/report/conclusion.hpp"
 #include "harness/report/failure_text.hpp"
+#include "harness/report/matrix.hpp"
 #include "harness/report/report.hpp"
 #include "harness/report/statement.hpp"
 #include "harness/report/text.hpp"
@@ -153,25 +154,6 @@ pugi::xml_node add_suite(pugi::xml_node root, const std::string& name, const Cou
   return suite;
 }
 
-struct Suite {
-  std::string name;
-  Counts counts;
-  std::vector<const VectorResult*> results;
-};
-
-std::vector<Suite> suites_of(const RunResult& run) {
-  std::vector<Suite> suites;
-  for (const VectorResult& result : run.results) {
-    const std::string name = suite_name(result);
-    auto suite = std::find_if(suites.begin(), suites.end(),
-                              [&name](const Suite& known) { return known.name == name; });
-    if (suite == suites.end()) suite = suites.insert(suite, Suite{name, {}, {}});
-    suite->counts.add(result);
-    suite->results.push_back(&result);
-  }
-  return suites;
-}
-
 void add_environment(pugi::xml_node root, const RunResult& run) {
   if (run.errors.empty()) return;
   const std::string name = "attest.environment";
@@ -188,7 +170,6 @@ void add_environment(pugi::xml_node root, const RunResult& run) {
 }  // namespace
 
 std::string junit_report(const RunResult& run, const std::optional<Diagnosis>& diagnosis) {
-  const std::vector<Suite> suites = suites_of(run);
   Counts all;
   for (const VectorResult& result : run.results) all.add(result);
   all.add_errors(run.errors.size());
@@ -202,9 +183,16 @@ std::string junit_report(const RunResult& run, const std::optional<Diagnosis>& d
   // No `skipped` here: the schema of Jenkins' xUnit plugin does not allow it and rejects the file.
   set_counts(root, all);
   set_attribute(root, "time", seconds(all.time_s));
-  for (const Suite& suite : suites) {
-    const pugi::xml_node node = add_suite(root, suite.name, suite.counts, run);
-    for (const VectorResult* result : suite.results) add_result(node, *result, run, diagnosis);
+  const auto suites = grouped(
+      run, [](const VectorResult&) { return true; },
+      [](const VectorResult& a, const VectorResult& b) {
+        return a.profile == b.profile && a.group == b.group;
+      });
+  for (const Together& suite : suites) {
+    Counts counts;
+    for (const VectorResult* result : suite) counts.add(*result);
+    const pugi::xml_node node = add_suite(root, suite_name(*suite.front()), counts, run);
+    for (const VectorResult* result : suite) add_result(node, *result, run, diagnosis);
   }
   add_environment(root, run);
   std::ostringstream out;

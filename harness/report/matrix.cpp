@@ -19,7 +19,7 @@ constexpr std::array by_gravity = {
     Verdict::fail, Verdict::non_finite,  Verdict::protocol, Verdict::timeout, Verdict::crash};
 static_assert(by_gravity.size() == verdict_count);
 
-Verdict gravest(const std::vector<const VectorResult*>& results) {
+Verdict gravest(const Together& results) {
   for (auto verdict = by_gravity.rbegin(); verdict != by_gravity.rend(); ++verdict) {
     const auto has_it = [&](const VectorResult* result) { return result->verdict == *verdict; };
     if (std::any_of(results.begin(), results.end(), has_it)) return *verdict;
@@ -28,7 +28,7 @@ Verdict gravest(const std::vector<const VectorResult*>& results) {
 }
 
 // The smallest headroom of the results, in small type.
-std::string headroom_text(const std::vector<const VectorResult*>& results) {
+std::string headroom_text(const Together& results) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const VectorResult* result : results) {
     if (result->verdict != Verdict::pass || !result->tightest) continue;
@@ -39,8 +39,8 @@ std::string headroom_text(const std::vector<const VectorResult*>& results) {
 
 // The cell of the results of a profile for which `wanted` is true.
 template <typename Wanted>
-Cell cell_of(const std::vector<const VectorResult*>& all, Wanted wanted) {
-  std::vector<const VectorResult*> results;
+Cell cell_of(const Together& all, Wanted wanted) {
+  Together results;
   std::size_t passed = 0, failed = 0;
   for (const VectorResult* result : all) {
     if (!wanted(*result)) continue;
@@ -55,7 +55,7 @@ Cell cell_of(const std::vector<const VectorResult*>& all, Wanted wanted) {
           gravest(results), headroom_text(results)};
 }
 
-DocumentTable matrix_of(const std::vector<const VectorResult*>& results) {
+DocumentTable matrix_of(const Together& results) {
   std::set<LoopRate> rates;
   std::vector<std::string> groups;
   for (const VectorResult* result : results) {
@@ -87,16 +87,9 @@ DocumentTable matrix_of(const std::vector<const VectorResult*>& results) {
 }  // namespace
 
 std::vector<DocumentTable> matrices_of(const RunResult& run) {
-  std::vector<std::vector<const VectorResult*>> profiles;
-  for (const VectorResult& result : run.results) {
-    const auto same = std::find_if(profiles.begin(), profiles.end(), [&](const auto& profile) {
-      return profile.front()->profile == result.profile;
-    });
-    if (same != profiles.end())
-      same->push_back(&result);
-    else
-      profiles.push_back({&result});
-  }
+  std::vector<Together> profiles = grouped(
+      run, [](const VectorResult&) { return true; },
+      [](const VectorResult& a, const VectorResult& b) { return a.profile == b.profile; });
   std::stable_partition(profiles.begin(), profiles.end(),
                         [](const auto& profile) { return fails_a_run(gravest(profile)); });
   std::vector<DocumentTable> tables;

@@ -1,12 +1,34 @@
-// The results of a run by group and rate, as tables for the terminal and the HTML page.
+// Groups of the results of a run, and their table by group and rate for the terminal and the page.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "harness/report/document.hpp"
 #include "harness/verify/run_result.hpp"
 
 namespace attest {
+
+// Results that are shown together, in the order of the run.
+using Together = std::vector<const VectorResult*>;
+
+// Groups the results for which `wanted` is true. Two results for which `equal` is true are in the
+// same group.
+template <typename Wanted, typename Equal>
+std::vector<Together> grouped(const RunResult& run, Wanted wanted, Equal equal) {
+  std::vector<Together> groups;
+  for (const VectorResult& result : run.results) {
+    if (!wanted(result)) continue;
+    const auto group = std::find_if(groups.begin(), groups.end(), [&](const Together& known) {
+      return equal(*known.front(), result);
+    });
+    if (group != groups.end())
+      group->push_back(&result);
+    else
+      groups.push_back({&result});
+  }
+  return groups;
+}
 
 // A table for each profile; profiles with a failure come first. It has a row for each group, and a
 // last row with the sums; a column for each rate at which the profile has results, ascending, and a

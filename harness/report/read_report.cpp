@@ -201,6 +201,18 @@ void check_numbers(JsonReader reader, JsonReader totals, const RunResult& run) {
   }
 }
 
+// What in the result contradicts the level of its case; empty if nothing does.
+std::string_view contradiction_of_level(const VectorResult& result, const Case& the_case,
+                                        Level level) {
+  if (result.exact_only && !the_case.exact_only) {
+    return "is skipped as a vector of the exact level, but its case is compared at every level";
+  }
+  const bool passes = result.verdict == Verdict::pass || result.verdict == Verdict::xpass;
+  return passes && the_case.exact_only && level != Level::exact
+             ? "passes, but its case is compared at the exact level only"
+             : "";
+}
+
 }  // namespace
 
 Result<ReadReport> read_report(const std::string& path) {
@@ -234,22 +246,6 @@ Result<ReadReport> read_report(const std::string& path) {
   if (!error.empty()) return fail_at(path, error);
   return run;
 }
-
-namespace {
-
-// What in the result contradicts the level of its case; empty if nothing does.
-std::string_view contradiction_of_level(const VectorResult& result, const Case& the_case,
-                                        Level level) {
-  if (result.exact_only && !the_case.exact_only) {
-    return "is skipped as a vector of the exact level, but its case is compared at every level";
-  }
-  const bool passes = result.verdict == Verdict::pass || result.verdict == Verdict::xpass;
-  return passes && the_case.exact_only && level != Level::exact
-             ? "passes, but its case is compared at the exact level only"
-             : "";
-}
-
-}  // namespace
 
 Result<void> check_against(const std::vector<SelectedCase>& cases, const ReadReport& report,
                            const std::string& path) {

@@ -32,7 +32,7 @@ std::string delays(std::string_view unit, std::string_view result, const std::ve
   add_spread("start after the release", begins, table);
   add_spread(fmt::format("{} after the release", result), results, table);
   add_spread(fmt::format("sample age at the {}", result), ages, table);
-  return text_of(table, {});
+  return render_text(table, {});
 }
 
 }  // namespace
@@ -51,7 +51,7 @@ std::string render_tasks(const TaskSet& set, const std::vector<std::vector<TaskJ
                           analysed ? Cell(*analysed) : Cell("over a period"), longest,
                           longest > task.rate.tick(1) ? "longer than its period" : ""});
   }
-  return text_of(table, {});
+  return render_text(table, {});
 }
 
 std::string render_delays(const TaskSet& set, const std::vector<std::vector<TaskJob>>& jobs,
@@ -69,7 +69,7 @@ std::string render_flights(const VectorResult& in_time, const VectorResult& sche
         {metric.name, std::string(name_of(metric.measure)), fmt::format("{:.4g}", metric.value),
          fmt::format("{:.4g}", scheduled.metrics[i].value), metric_bounds(metric)});
   }
-  std::string out = text_of(table, {});
+  std::string out = render_text(table, {});
   for (const auto& [when, result] :
        {std::pair("in time", &in_time), std::pair("scheduled", &scheduled)}) {
     if (result->verdict == Verdict::pass) continue;

@@ -214,6 +214,8 @@ Document comparison_document(const SignalsComparison& comparison, const TimedSig
                    fmt::format("{} of {} common signals agree, {} samples",
                                comparison.signals.size() - comparison.deviating_signals(),
                                comparison.signals.size(), comparison.compared())};
+  document.facts = {{"only in got", fmt::format("{}", fmt::join(comparison.only_in_got, ", "))},
+                    {"only in want", fmt::format("{}", fmt::join(comparison.only_in_want, ", "))}};
   document.tables = {table_of(comparison)};
   const SecondsOf clock({&got, &want});
   PlotGroup group{"Signals that differ", time_label, {}};

@@ -126,7 +126,7 @@ DocumentTable indices_table(const SweepRun& run, const MetricSummary& metric) {
 }
 
 // The command that flies a kept sample again.
-std::string sim_command(const SweepRun& run, std::uint64_t sample) {
+std::string command_to_fly(const SweepRun& run, std::uint64_t sample) {
   const Case& the_case = run.sampler.nominal().the_case;
   const PlantConfiguration& plant = run.sampler.nominal().plant_configuration;
   const std::string& port = run.identity.port;
@@ -152,7 +152,7 @@ DocumentTable worst_table(const SweepRun& run, const RequirementResult& result) 
     }
     for (std::size_t d = 0; d < shown; ++d) row.emplace_back(figure(run.data.drawn[d][sample]));
     table.rows.push_back(std::move(row));
-    table.below.push_back(sim_command(run, sample));
+    table.below.push_back(command_to_fly(run, sample));
   }
   return table;
 }

@@ -23,27 +23,6 @@
 namespace attest {
 namespace {
 
-// Results that are shown together, in the order of the run.
-using Together = std::vector<const VectorResult*>;
-
-// Groups the results for which `wanted` is true. Two results for which `equal` is true are in the
-// same group.
-template <typename Wanted, typename Equal>
-std::vector<Together> grouped(const RunResult& run, Wanted wanted, Equal equal) {
-  std::vector<Together> groups;
-  for (const VectorResult& result : run.results) {
-    if (!wanted(result)) continue;
-    const auto group = std::find_if(groups.begin(), groups.end(), [&](const Together& known) {
-      return equal(*known.front(), result);
-    });
-    if (group != groups.end())
-      group->push_back(&result);
-    else
-      groups.push_back({&result});
-  }
-  return groups;
-}
-
 std::string header(const RunResult& run) {
   std::string out = fmt::format("{} {} ({}) at the {} level, attest {}\n", one_line(run.port_name),
                                 one_line(run.port_version), one_line(run.port), name_of(run.level),
@@ -215,7 +194,7 @@ std::string matrices(const RunResult& run, TerminalStyle style) {
     for (std::vector<Cell>& row : table.rows) {
       for (Cell& cell : row) cell.small.clear();
     }
-    out += text_of(table, style) + "\n";
+    out += render_text(table, style) + "\n";
   }
   const bool is_plain = run.count(Verdict::pass) == run.results.size();
   return is_plain ? out : out + "n/m: n of m vectors passed; +k: k counted apart\n\n";
@@ -225,6 +204,13 @@ std::string verdict_line(const RunResult& run, double wall_s, TerminalStyle styl
   const Verdict conclusion = conclusion_of(run);
   return fmt::format("{} {}\n", painted(outcome_of(conclusion), colour_of(conclusion), style),
                      conclusion_text(run, fmt::format(" in {:.1f} s", wall_s)));
+}
+
+// One line for a single claim; else a line for each claim, and one with suite, port and date.
+std::string conformance(const RunResult& run) {
+  const auto [claims, subject] = statement_of(run);
+  if (claims.size() == 1) return fmt::format("conformance: {}\n", conformance_statement(run));
+  return fmt::format("conformance:\n  {}\n  {}\n", fmt::join(claims, "\n  "), subject);
 }
 
 }  // namespace
@@ -250,17 +236,6 @@ std::string painted(std::string_view text, Colour colour, TerminalStyle style) {
   constexpr std::array codes{"0", "1", "32", "33", "31"};
   return fmt::format("\x1b[{}m{}\x1b[0m", codes[static_cast<std::size_t>(colour)], text);
 }
-
-namespace {
-
-// One line for a single claim; else a line for each claim, and one with suite, port and date.
-std::string conformance(const RunResult& run) {
-  const auto [claims, subject] = statement_of(run);
-  if (claims.size() == 1) return fmt::format("conformance: {}\n", conformance_statement(run));
-  return fmt::format("conformance:\n  {}\n  {}\n", fmt::join(claims, "\n  "), subject);
-}
-
-}  // namespace
 
 std::string render_summary(const RunResult& run, double wall_s, TerminalStyle style,
                            const std::optional<Diagnosis>& diagnosis, Failures shown) {

@@ -53,6 +53,12 @@ void set_text(Values& out, const char* name, std::string_view value) {
   if (!value.empty()) out.set(name, Values(std::string(value)));
 }
 
+Values values_of(std::initializer_list<std::pair<const char*, std::string>> texts) {
+  Values out;
+  for (const auto& [name, value] : texts) set_text(out, name, value);
+  return out;
+}
+
 template <typename Items, typename ToData>
 Values list_of(const Items& items, ToData to_data) {
   Values list(Values::type::list);
@@ -161,23 +167,16 @@ Values table_to_data(const DocumentTable& table) {
 }
 
 Values fact_to_data(const Fact& fact) {
-  Values out;
-  set_text(out, "name", one_line(fact.name));
-  set_text(out, "value", one_line(fact.value));
-  return out;
+  return values_of({{"name", one_line(fact.name)}, {"value", one_line(fact.value)}});
 }
 
 Values note_to_data(const Note& note) {
-  Values out;
-  set_text(out, "class", note.is_error ? "error" : "note");
-  set_text(out, "text", one_line(note.text));
-  return out;
+  return values_of({{"class", note.is_error ? "error" : "note"}, {"text", one_line(note.text)}});
 }
 
 Values section_to_data(const Section& section) {
-  Values out;
-  set_text(out, "heading", one_line(section.heading));
-  set_text(out, "class", section.is_marked ? "marked" : "");
+  Values out = values_of(
+      {{"heading", one_line(section.heading)}, {"class", section.is_marked ? "marked" : ""}});
   out.set("lines", list_of(section.lines, line_to_data));
   return out;
 }

@@ -23,25 +23,20 @@ namespace {
 // frequent ones come first.
 std::vector<Cell> failures_without_deviation(const RunResult& run) {
   constexpr std::size_t most = 8;
-  std::vector<std::pair<const VectorResult*, std::size_t>> reasons;  // the first, and how many
-  for (const VectorResult& result : run.results) {
-    if (!fails_a_run(result.verdict) || result.first) continue;
-    const auto same = std::find_if(reasons.begin(), reasons.end(), [&](const auto& known) {
-      return known.first->verdict == result.verdict && known.first->reason == result.reason;
-    });
-    if (same != reasons.end())
-      ++same->second;
-    else
-      reasons.emplace_back(&result, 1);
-  }
+  std::vector<Together> reasons = grouped(
+      run, [](const VectorResult& result) { return fails_a_run(result.verdict) && !result.first; },
+      [](const VectorResult& a, const VectorResult& b) {
+        return a.verdict == b.verdict && a.reason == b.reason;
+      });
   std::stable_sort(reasons.begin(), reasons.end(),
-                   [](const auto& a, const auto& b) { return a.second > b.second; });
+                   [](const Together& a, const Together& b) { return a.size() > b.size(); });
   if (reasons.size() > most) reasons.resize(most);
   std::vector<Cell> lines;
-  for (const auto& [result, count] : reasons) {
+  for (const Together& group : reasons) {
+    const VectorResult& result = *group.front();
     lines.emplace_back(
-        fmt::format("{} {}: {}", count, name_of(result->verdict), reason_text(*result)),
-        result->verdict);
+        fmt::format("{} {}: {}", group.size(), name_of(result.verdict), reason_text(result)),
+        result.verdict);
   }
   return lines;
 }

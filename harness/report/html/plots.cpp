@@ -154,29 +154,22 @@ std::vector<std::size_t> drawn_ticks(const Curves& curves, std::size_t marked, s
 }
 
 std::vector<const VectorResult*> vectors_to_plot(const RunResult& run, std::size_t most) {
-  struct Candidate {
-    std::size_t round;     // number of rates of the same group before it
-    std::size_t position;  // in the results
-  };
+  using Candidate = std::pair<std::size_t, const VectorResult*>;  // rates of its group before it
   std::map<std::pair<std::string, std::string>, std::vector<LoopRate>> seen;
   std::vector<Candidate> candidates;
-  for (std::size_t i = 0; i < run.results.size(); ++i) {
-    const VectorResult& result = run.results[i];
+  for (const VectorResult& result : run.results) {
     if (!fails_a_run(result.verdict) || !result.first) continue;
     std::vector<LoopRate>& rates = seen[{result.profile, result.group}];
     if (std::find(rates.begin(), rates.end(), result.rate) != rates.end()) continue;
-    candidates.push_back({rates.size(), i});
+    candidates.emplace_back(rates.size(), &result);
     rates.push_back(result.rate);
   }
   std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.round < b.round; });
+                   [](const Candidate& a, const Candidate& b) { return a.first < b.first; });
   if (candidates.size() > most) candidates.resize(most);
-  std::sort(candidates.begin(), candidates.end(),
-            [](const Candidate& a, const Candidate& b) { return a.position < b.position; });
   std::vector<const VectorResult*> chosen;
-  for (const Candidate& candidate : candidates) {
-    chosen.push_back(&run.results[candidate.position]);
-  }
+  for (const Candidate& candidate : candidates) chosen.push_back(candidate.second);
+  std::sort(chosen.begin(), chosen.end());  // by their place in the results
   return chosen;
 }
 

@@ -23,7 +23,7 @@ Cell cell_of(const RunResult& run, std::size_t row, std::size_t column) {
 }
 
 std::string text_of_first(const RunResult& run, TerminalStyle style = {}) {
-  return text_of(matrices_of(run).front(), style);
+  return render_text(matrices_of(run).front(), style);
 }
 
 TEST(Matrix, ACellSaysHowManyPassedOfThoseThatRan) {

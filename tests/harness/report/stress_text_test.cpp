@@ -56,10 +56,12 @@ StressRun mixed_run() {
   return run;
 }
 
-std::string text_of_result(const StressResult& stress) { return text_of(result_table(stress), {}); }
+std::string text_of_result(const StressResult& stress) {
+  return render_text(result_table(stress), {});
+}
 
 std::string last_line(const StressRun& run) {
-  return lines_of(text_of(stress_document(run).head, {})).back();
+  return lines_of(render_text(stress_document(run).head, {})).back();
 }
 
 TEST(StressText, NamesNoPercentileThatTheSampleCannotSupport) {
