@@ -246,6 +246,18 @@ class PassingPort(Page):
         self.assertGreater(self.run_in_page("document.querySelectorAll('.row').length"), 3)
 
 
+class CascadeFlights(Page):
+    """A flight of the cascade has two rates: 250-1000hz."""
+
+    options = ["--port", "builtin", "--filter", "px4-v1.16.0/flight/hover@250-1000hz*"]
+
+    def test_a_click_on_a_cell_shows_its_flights(self):
+        self.browser.click("document.querySelector('.matrix td[data-rate=\"250-1000hz\"]')")
+        ids = self.run_in_page("[...document.querySelectorAll('.row')].map((r) => r.title)")
+        self.assertEqual(len(ids), len(self.report["results"]))
+        self.assertTrue(all("@250-1000hz-" in i for i in ids), ids)
+
+
 class StepTimes(HasPlots, Page):
     """The page of `attest time --html`: axes with logarithms, bars, steps."""
 
