@@ -282,24 +282,16 @@ void add_machine(Command command, StressOptions& options) {
 }
 
 void add_budgets(Command command, StressOptions& options) {
-  command
-      .option("--misses-per-million", options.misses_per_million,
-              "Limit of deadline misses, and also of overruns, per million deadlines; default: "
-              "that of the case")
-      .at_least_zero()
-      .group(option_group::strictness);
-  command
-      .option("--p99-latency", options.p99_latency_us,
-              "Wake-up latency that 1% of the steps may exceed [us]; default: that of the "
-              "case")
-      .at_least_zero()
-      .group(option_group::strictness);
-  command
-      .option("--budget", options.execution_us,
-              "Execution time above which a step is an overrun [us]; default: that of the "
-              "case")
-      .at_least_zero()
-      .group(option_group::strictness);
+  const auto add = [&](const char* name, std::optional<double>& limit, const char* what) {
+    command.option(name, limit, what).at_least_zero().group(option_group::strictness);
+  };
+  add("--misses-per-million", options.misses_per_million,
+      "Limit of deadline misses, and also of overruns, per million deadlines; default: that of the "
+      "case");
+  add("--p99-latency", options.p99_latency_us,
+      "Wake-up latency that 1% of the steps may exceed [us]; default: that of the case");
+  add("--budget", options.execution_us,
+      "Execution time above which a step is an overrun [us]; default: that of the case");
 }
 
 void add_stress_reports(Command command, StressOptions& options) {

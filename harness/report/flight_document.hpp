@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "harness/host/declarations.hpp"
-#include "harness/verify/simulate.hpp"
 #include "harness/report/document.hpp"
+#include "harness/verify/simulate.hpp"
 
 namespace attest {
 
