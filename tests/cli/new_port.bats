@@ -28,14 +28,14 @@ made() {
 @test "a new port in C" { made c cc; }
 @test "a new port in C of the cascade" {
   made c_cascade cc
-  has "px4-v1.16.0/rates"
+  has "px4-v1.16.0: vectors by group and rate"
   lacks "px4-v1.5.5"
 }
 @test "a new port in C++" { made cpp c++; }
 @test "a new port in Python" { made python python3; }
 @test "a new port in Python of the cascade" {
   made python_cascade python3
-  has "px4-v1.16.0/rates"
+  has "px4-v1.16.0: vectors by group and rate"
   lacks "px4-v1.5.5"
 }
 @test "a new port in Rust" { made rust cargo; }
