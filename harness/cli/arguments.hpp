@@ -1,5 +1,4 @@
-// The command line: which command, with which options. The sources of the commands do not include
-// CLI11, because CLI11 takes longer to compile than all of them together.
+// The command line: which command, with which options (command_line.hpp).
 #pragma once
 
 namespace attest::cli {

@@ -1,5 +1,5 @@
-// Declares the commands and their options. A command does not include CLI11, which takes longer to
-// compile than all commands together: it uses the handles here.
+// Declares the commands and their options. A command but `help` does not include CLI11, which takes
+// longer to compile than all commands together: it uses the handles here.
 #pragma once
 
 #include <cstdint>

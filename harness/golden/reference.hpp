@@ -1,5 +1,5 @@
-// The reference: attest's own implementation of the law. What a port's outputs are compared with is
-// computed here, and nowhere else.
+// Runs the reference, attest's own implementation of the law (port/builtin.hpp). No other code of
+// the harness does, except units_for() for the unit that a port does not have.
 #pragma once
 
 #include <functional>

@@ -46,7 +46,7 @@ Result<void> write_csv_trace(AtomicFile file, const Trace& trace) {
   return write_csv(std::move(file), trace, columns);
 }
 
-// To add a format: its functions in a file, their declarations if it has no header, and its row.
+// To add a format: a file with its functions, and its row here.
 constexpr std::array formats{
     TraceFormat{"csv", "", "CSV", nullptr, open_csv, nullptr, signals_of_csv, read_csv_table,
                 write_csv_trace},

@@ -1,4 +1,5 @@
-// The formats of files of traces, logs and tables: the only table of what attest does with each.
+// The formats of files of traces, logs and tables: which of them attest can read and write, and
+// how.
 #pragma once
 
 #include <cstddef>

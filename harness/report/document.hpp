@@ -74,8 +74,8 @@ struct Section {
 };
 
 // The first cell of a row is its header. Another column is aligned to the right if each of its
-// cells begins with a number, is empty or is "-". A name in the header may end with a unit, as in
-// "rate [Hz]"; the text has the unit in the cells.
+// cells begins with a number, is empty, "-" or "inf". A name in the header may end with a unit, as
+// in "rate [Hz]"; the text has the unit in the cells.
 struct DocumentTable {
   std::string caption;
   std::vector<std::string> header;

@@ -1,6 +1,6 @@
-// The only table of signals. CSV columns, case keys and report lines all take their names from it.
-// A channel is a member of Sample (or one bit of it), found by its offset, so the table always
-// agrees with the ABI structs.
+// The only table of signals (its rows: module_table.cpp). CSV columns, case keys and report lines
+// all take their names from it. A channel is a member of Sample (or one bit of it), found by its
+// offset, so the table always agrees with the ABI structs.
 //
 // Channels of two modules may have the same name, because a topic may go to both. So a name
 // identifies a channel only within a module. Units share memory in Sample (module.hpp), so only the

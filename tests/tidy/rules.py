@@ -13,8 +13,8 @@ MAX_FILE_LINES = 350
 
 # A folder of harness/ includes itself and those before it.
 HARNESS_ORDER = (
-    "core process workers schedule trace ulog plant port recording compare casefile loop realtime"
-    " host golden verify diagnosis measure sweep report cli".split()
+    "core process trace ulog plant port compare casefile loop realtime host golden verify"
+    " diagnosis measure sweep report cli".split()
 )
 
 
