@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -62,8 +63,11 @@ class Simulate : public testing::Test {
     auto flight = simulate_flight(case_, plan_, host);
     if (!flight) return tl::unexpected(flight.error());
     if (flight->flown.trace.samples.empty()) return flight->result;
-    if (auto done = write_trace(*AtomicFile::open(out_), flight->flown.trace); !done)
+    auto file = AtomicFile::open(out_);
+    if (!file) return tl::unexpected(file.error());
+    if (auto done = write_trace(*std::move(file), flight->flown.trace); !done) {
       return tl::unexpected(done.error());
+    }
     return flight->result;
   }
 
