@@ -3,10 +3,7 @@
 
 #include "controller/attest_cascade.h"
 #include "controller/cascade/unit_table.hpp"
-
-#ifndef ATTEST_REFERENCE_VERSION
-#define ATTEST_REFERENCE_VERSION "unversioned"
-#endif
+#include "controller/reference_build.hpp"
 
 namespace attest::cascade {
 

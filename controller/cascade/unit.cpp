@@ -4,10 +4,6 @@
 #include "controller/cascade/whole.hpp"
 #include "controller/mc_att_control/unit.hpp"
 
-#ifndef ATTEST_REFERENCE_SCALAR
-#define ATTEST_REFERENCE_SCALAR float
-#endif
-
 namespace attest::cascade {
 
 const attest_unit* cascade_unit() { return &reference_table<ATTEST_REFERENCE_SCALAR>; }

@@ -4,10 +4,7 @@
 #include "controller/actuation/unit_table.hpp"
 #include "controller/mc_att_control/mc_att_control.hpp"
 #include "controller/mc_att_control/unit_table.hpp"
-
-#ifndef ATTEST_REFERENCE_VERSION
-#define ATTEST_REFERENCE_VERSION "unversioned"
-#endif
+#include "controller/reference_build.hpp"
 
 namespace attest::mc_att_control {
 
