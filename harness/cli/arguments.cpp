@@ -10,7 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "harness/cli/command_line.hpp"
+#include "harness/cli/command.hpp"
 #include "harness/cli/completion.hpp"
 #include "harness/cli/man_page.hpp"
 #include "harness/cli/outputs.hpp"

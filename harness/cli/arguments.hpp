@@ -1,9 +1,9 @@
-// The command line: which command, with which options (command_line.hpp).
+// The command line: which command, with which options (command.hpp).
 #pragma once
 
 namespace attest::cli {
 
-// Does what the arguments say; returns the exit code (command.hpp).
+// Does what the arguments say; returns the exit code (globals.hpp).
 int run_command_line(int argc, char** argv);
 
 }  // namespace attest::cli

@@ -1,87 +1,70 @@
 #include "harness/cli/command.hpp"
 
-#include <cstdio>
-#include <set>
 #include <utility>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include "harness/core/interrupt.hpp"
-#include "harness/report/read_report.hpp"
 
 namespace attest::cli {
-namespace {
 
-// The vectors of `cases` that failed in a report, and those without which they may pass. Errors:
-// the file is no report, or no such vector failed.
-Result<std::vector<SelectedCase>> failed_in(const std::string& report,
-                                            std::vector<SelectedCase> cases) {
-  const auto earlier = read_report(report);
-  if (!earlier) return tl::unexpected(earlier.error());
-  std::set<std::string> ids;
-  for (const VectorResult& result : earlier->results) {
-    if (!fails_a_run(result.verdict)) continue;
-    ids.insert(result.id());
-    ids.insert(result.after.begin(), result.after.end());
-  }
-  cases = keep_vectors(std::move(cases), ids);
-  if (!cases.empty()) return cases;
-  return fail_at(report, "no selected vector failed in it; run without --rerun-failed");
+Option Option::type(const char* name) const { return Option(*option_->type_name(name)); }
+Option Option::group(const char* name) const { return Option(*option_->group(name)); }
+Option Option::description(const char* text) const { return Option(*option_->description(text)); }
+Option Option::shows_default() const { return Option(*option_->capture_default_str()); }
+Option Option::shows_default(const char* text) const { return Option(*option_->default_str(text)); }
+Option Option::required() const { return Option(*option_->required()); }
+Option Option::one_each_time() const { return Option(*option_->allow_extra_args(false)); }
+Option Option::separated_by_commas() const { return Option(*option_->delimiter(',')); }
+
+Option Option::range(double least, double most) const {
+  return Option(*option_->check(CLI::Range(least, most)));
+}
+Option Option::range(int least, int most) const {
+  return Option(*option_->check(CLI::Range(least, most)));
+}
+Option Option::at_least_zero() const { return Option(*option_->check(CLI::NonNegativeNumber)); }
+Option Option::positive() const { return Option(*option_->check(CLI::PositiveNumber)); }
+Option Option::one_of(const std::vector<std::string>& values) const {
+  return Option(*option_->check(CLI::IsMember(values)));
+}
+Option Option::check(const std::function<std::string(const std::string&)>& wrong) const {
+  return Option(*option_->check(wrong));
 }
 
-}  // namespace
+Option Option::needs(Option other) const { return Option(*option_->needs(other.option_)); }
+Option Option::excludes(Option other) const { return Option(*option_->excludes(other.option_)); }
+bool Option::is_given() const { return option_->count() > 0; }
 
-int report_error(const Error& error) {
-  if (interrupted()) {  // a reader may have ended with another message
-    const bool says_more = error.message.starts_with("interrupted");
-    std::fputs(fmt::format("attest: {}\n", says_more ? error.message : "interrupted").c_str(),
-               stderr);
-    return exit_interrupted;
-  }
-  // Not through fmt::print: it throws when stderr cannot be written.
-  std::fputs(fmt::format("attest: error: {}\n", error.to_string()).c_str(), stderr);
-  return exit_usage;
+template <typename T>
+Option Command::option(const char* name, T& value, const std::string& what) const {
+  return Option(*app_->add_option(name, value, what));
+}
+template Option Command::option(const char*, std::string&, const std::string&) const;
+template Option Command::option(const char*, std::vector<std::string>&, const std::string&) const;
+template Option Command::option(const char*, std::filesystem::path&, const std::string&) const;
+template Option Command::option(const char*, int&, const std::string&) const;
+template Option Command::option(const char*, std::uint64_t&, const std::string&) const;
+template Option Command::option(const char*, double&, const std::string&) const;
+template Option Command::option(const char*, std::optional<int>&, const std::string&) const;
+template Option Command::option(const char*, std::optional<double>&, const std::string&) const;
+
+Option Command::flag(const char* name, bool& value, const std::string& what) const {
+  return Option(*app_->add_flag(name, value, what));
+}
+Option Command::find(const char* name) const { return Option(*app_->get_option(name)); }
+
+void Command::examples(std::initializer_list<Example> examples) const {
+  std::string text = "\nExamples:\n";
+  for (const auto& [line, what] : examples) text += fmt::format("  {}\n      {}\n", line, what);
+  app_->footer(text);
 }
 
-std::string SelectionOptions::narrowing() const {
-  auto options = as_options({{"--filter", filters},
-                             {"--exclude", excludes},
-                             {"--group", groups},
-                             {"--rate", rates},
-                             {"--vehicle", vehicles},
-                             {"--plant", plants}});
-  if (!rerun_failed.empty()) options.push_back("--rerun-failed " + rerun_failed);
-  return fmt::format("{}", fmt::join(options, " "));
+void Command::runs(Action work) const {
+  app_->callback([work = std::move(work), action = action_] { *action = work; });
 }
 
-Result<std::vector<LoopRate>> parse_rates(const std::vector<std::string>& texts) {
-  std::vector<LoopRate> rates;
-  for (const std::string& text : texts) {
-    const auto rate = LoopRate::parse(text);
-    if (!rate) return tl::unexpected(rate.error());
-    rates.push_back(*rate);
-  }
-  return rates;
-}
-
-Result<std::vector<SelectedCase>> SelectionOptions::cases_in(const CaseFolders& folders) const {
-  Selection selection;
-  selection.filters = filters;
-  selection.excludes = excludes;
-  selection.groups = groups;
-  selection.profiles = profiles;
-  selection.vehicles = vehicles;
-  selection.plants = plants;
-  auto asked = parse_rates(rates);
-  if (!asked) return tl::unexpected(asked.error());
-  selection.rates = *std::move(asked);
-  const auto part = Shard::parse(shard);
-  if (!part) return tl::unexpected(part.error());
-  selection.shard = *part;
-  auto cases = select_cases(folders, selection);
-  if (!cases || rerun_failed.empty()) return cases;
-  return failed_in(rerun_failed, *std::move(cases));
+Command CommandLine::add(const char* name, const char* what) const {
+  return {*app.add_subcommand(name, what), globals, action};
 }
 
 }  // namespace attest::cli

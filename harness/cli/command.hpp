@@ -1,66 +1,125 @@
-// What all commands share: exit codes, errors, and the options of several commands.
+// Declares the commands and their options. A command but `help` does not include CLI11, which takes
+// longer to compile than all commands together: it uses the handles here.
 #pragma once
 
-#include <map>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <initializer_list>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "harness/casefile/select.hpp"
-#include "harness/core/result.hpp"
-#include "harness/host/port_process.hpp"
+#include "harness/cli/globals.hpp"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace attest::cli {
 
-enum Exit : int {
-  exit_ok = 0,
-  exit_failed = 1,        // a vector or check failed, or the user refused `bless`
-  exit_usage = 2,         // wrong usage, no result, or the environment: files, ports, goldens
-  exit_interrupted = 130  // Ctrl-C or SIGTERM; the number that shells give after Ctrl-C
+// The work of the chosen command; it returns the exit code.
+using Action = std::function<int()>;
+
+// An option that a command has. Copies are the same option.
+class Option {
+ public:
+  explicit Option(CLI::Option& option) : option_(&option) {}
+
+  Option type(const char* name) const;   // of its value, for --help: "HZ"
+  Option group(const char* name) const;  // its heading in --help
+  Option description(const char* text) const;
+  Option shows_default() const;                  // --help shows the value that it has now
+  Option shows_default(const char* text) const;  // --help shows this text
+  Option required() const;
+  Option one_each_time() const;  // of a list: a value each time that it is given
+  Option separated_by_commas() const;
+
+  // An error if the value is another one, with a text that names the values that are right.
+  Option range(double least, double most) const;
+  Option range(int least, int most) const;
+  Option at_least_zero() const;
+  Option positive() const;
+  Option one_of(const std::vector<std::string>& values) const;
+  // `wrong` returns what is wrong with a value; empty: nothing.
+  Option check(const std::function<std::string(const std::string&)>& wrong) const;
+
+  Option needs(Option other) const;
+  Option excludes(Option other) const;
+
+  bool is_given() const;  // after parsing
+
+ private:
+  CLI::Option* option_;
 };
 
-// The options of all commands.
-struct Globals {
-  std::string suite;   // folder with cases/ and golden/; empty: find_suite() searches for it
-  bool quiet = false;  // print only failures and errors
-  // The barrier of all ports (HostOptions::barrier). The command line completes it.
-  std::shared_ptr<BarrierOptions> barrier = std::make_shared<BarrierOptions>();
-};
+// A command that is being declared. Copies are the same command.
+class Command {
+ public:
+  Command(CLI::App& app, const Globals& globals, Action& action)
+      : app_(&app), globals_(&globals), action_(&action) {}
 
-// Prints "attest: error: <file:line: message>" on stderr, and returns exit_usage. If the command
-// was interrupted, prints that and returns exit_interrupted.
-int report_error(const Error& error);
+  const Globals& globals() const { return *globals_; }
 
-// Errors: those of LoopRate::parse().
-Result<std::vector<LoopRate>> parse_rates(const std::vector<std::string>& texts);
+  // `value` outlives the command line. A name without hyphens is that of an argument. T:
+  // std::string, a list of them, std::filesystem::path, int, std::uint64_t, double, an optional int
+  // or double.
+  template <typename T>
+  Option option(const char* name, T& value, const std::string& what) const;
+  // A name such as "--stack,!--no-stack" has its negation.
+  Option flag(const char* name, bool& value, const std::string& what) const;
+  // REQUIRES: the command has it.
+  Option find(const char* name) const;
 
-// --filter, --exclude, --group, --profile, --rate, --vehicle, --plant, --shard and --rerun-failed,
-// as text until they are used.
-struct SelectionOptions {
-  std::vector<std::string> filters, excludes, groups, profiles, rates, vehicles, plants;
-  std::string shard = "1/1";
-  std::string rerun_failed;  // a JSON report: only vectors that failed in it; empty: no report
+  // A command line, and its purpose.
+  struct Example {
+    const char* line;
+    const char* what;
+  };
+  void examples(std::initializer_list<Example> examples) const;
 
-  bool selects_all() const {
-    return filters.empty() && excludes.empty() && groups.empty() && profiles.empty() &&
-           rates.empty() && vehicles.empty() && plants.empty() && shard == "1/1" &&
-           rerun_failed.empty();
+  // What the command does. `options` has been read then.
+  template <typename Options>
+  void runs(std::shared_ptr<Options> options, int (*work)(const Options&, const Globals&)) const {
+    runs([options, work, globals = globals_] { return work(*options, *globals); });
   }
+  void runs(Action work) const;
 
-  // The given options as text, except --profile and --shard: "--group tpa --rate 250".
-  std::string narrowing() const;
-
-  // The selected cases below `folders`. Errors: those of select_cases; text that is not a rate or a
-  // shard; a --rerun-failed that is no report, or in which no selected vector failed.
-  Result<std::vector<SelectedCase>> cases_in(const CaseFolders& folders) const;
+ private:
+  CLI::App* app_;
+  const Globals* globals_;
+  Action* action_;
 };
 
-// The results of `run` and `merge` for people and for other programs.
-struct ReportOptions {
-  std::map<std::string, std::string> files;  // file by ReportFormat::option; empty: no such report
-  bool diagnose = true;                      // name the probable mistake if a vector fails
-  bool verbose = false;                      // the summary has every failing case
-  bool github = false;                       // annotations and a job summary for GitHub Actions
+struct CommandLine {
+  CLI::App& app;
+  const Globals& globals;
+  Action& action;  // of the command that was chosen
+
+  Command add(const char* name, const char* what) const;
 };
+
+// Each declares a command, in the file that has its options and its work.
+void add_run(const CommandLine& line);
+void add_merge(const CommandLine& line);
+void add_sim(const CommandLine& line);
+void add_stress(const CommandLine& line);
+void add_sweep(const CommandLine& line);
+void add_sweep_rate(const CommandLine& line);
+void add_schedule(const CommandLine& line);
+void add_time(const CommandLine& line);
+void add_replay(const CommandLine& line);
+void add_record(const CommandLine& line);
+void add_compare(const CommandLine& line);
+void add_plot(const CommandLine& line);
+void add_faults(const CommandLine& line);
+void add_list(const CommandLine& line);
+void add_vectors(const CommandLine& line);
+void add_bless(const CommandLine& line);
+void add_new_port(const CommandLine& line);
+void add_doctor(const CommandLine& line);
+void add_smoke(const CommandLine& line);
 
 }  // namespace attest::cli

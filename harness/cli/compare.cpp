@@ -13,7 +13,7 @@
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/compare/compare_signals.hpp"
 #include "harness/core/file.hpp"
-#include "harness/host/trace_format.hpp"
+#include "harness/host/file_format.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/signals_document.hpp"
 
@@ -47,7 +47,7 @@ std::string not_compared(const ChannelSet& outputs, const std::string& want) {
 }
 
 Result<TimedSignals> signals_in(const std::string& file) {
-  auto signals = read_as<&TraceFormat::read_signals>(file);
+  auto signals = read_as<&FileFormat::read_signals>(file);
   if (!signals) return signals;
   for (const std::string& note : signals->notes) {
     fmt::print(stderr, "attest: note: {}: {}\n", file, note);
@@ -60,7 +60,7 @@ bool is_trace(const std::string& file) { return format_of(file).open != nullptr;
 Result<std::unique_ptr<TraceParts>> trace_in(const std::string& file) {
   std::error_code unknown;
   if (!std::filesystem::is_fifo(file, unknown)) {
-    return read_as<&TraceFormat::open>(file, TraceNeed::outputs);
+    return read_as<&FileFormat::open>(file, TraceNeed::outputs);
   }
   return fail_at(file, "is a pipe; write its content to a file first");
 }

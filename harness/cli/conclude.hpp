@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "harness/casefile/select.hpp"
-#include "harness/cli/command.hpp"
+#include "harness/cli/globals.hpp"
 #include "harness/core/file.hpp"
 #include "harness/host/port_process.hpp"
 #include "harness/report/report.hpp"

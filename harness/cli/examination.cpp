@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "harness/cli/command.hpp"
+#include "harness/cli/globals.hpp"
 #include "harness/host/smoke.hpp"
 #include "harness/port/profiles.hpp"
 #include "harness/report/text.hpp"

@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #include "harness/cli/arguments.hpp"
-#include "harness/cli/command.hpp"
+#include "harness/cli/globals.hpp"
 
 namespace {
 

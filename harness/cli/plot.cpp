@@ -11,7 +11,7 @@
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/suggestion.hpp"
-#include "harness/host/trace_format.hpp"
+#include "harness/host/file_format.hpp"
 #include "harness/report/signals_document.hpp"
 #include "harness/trace/channels.hpp"
 
@@ -30,7 +30,7 @@ constexpr std::size_t most_signals = 100;
 Result<std::vector<TimedSignals>> sources_of(const std::vector<std::string>& files) {
   std::vector<TimedSignals> sources;
   for (const std::string& file : files) {
-    auto signals = read_as<&TraceFormat::read_signals>(file);
+    auto signals = read_as<&FileFormat::read_signals>(file);
     if (!signals) return tl::unexpected(signals.error());
     for (const std::string& note : signals->notes) {
       fmt::print(stderr, "attest: note: {}: {}\n", file, note);

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "harness/cli/command.hpp"
+#include "harness/cli/globals.hpp"
 #include "harness/cli/run_plan.hpp"
 #include "harness/process/temporary_folder.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "harness/casefile/select.hpp"
-#include "harness/cli/command.hpp"
+#include "harness/cli/globals.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/sweep/flight_sampler.hpp"
 #include "harness/sweep/flights.hpp"

@@ -7,7 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "harness/golden/recorded.hpp"
-#include "harness/host/trace_format.hpp"
+#include "harness/host/file_format.hpp"
 #include "harness/port/profiles.hpp"
 
 namespace attest::cli {
@@ -73,7 +73,7 @@ Result<void> check_profile(const std::string& file, const FlightLog& log) {
 
 Result<FlightLog> read_log(const std::string& file, const std::vector<std::string>& assumed,
                            const std::string& profile, bool whole) {
-  auto log = read_as<&TraceFormat::read_log>(file, assumed, whole);
+  auto log = read_as<&FileFormat::read_log>(file, assumed, whole);
   if (!log) return log;
   if (!profile.empty()) log->profile = profile;
   if (auto chosen = choose_profile(file, *log); !chosen) return tl::unexpected(chosen.error());

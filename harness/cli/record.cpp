@@ -9,7 +9,7 @@
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
-#include "harness/host/trace_format.hpp"
+#include "harness/host/file_format.hpp"
 #include "harness/verify/fixed_step.hpp"
 
 namespace attest::cli {

@@ -16,7 +16,7 @@
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/version.hpp"
-#include "harness/host/trace_format.hpp"
+#include "harness/host/file_format.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/replay_document.hpp"
 #include "harness/report/text.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/cli/command.hpp"
+#include "harness/cli/globals.hpp"
 #include "harness/compare/log_agreement.hpp"
 #include "harness/core/result.hpp"
 #include "harness/golden/recorded.hpp"

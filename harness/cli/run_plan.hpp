@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "harness/casefile/select.hpp"
-#include "harness/cli/command.hpp"
+#include "harness/cli/globals.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/verify/case_job.hpp"
 #include "harness/verify/expected_failures.hpp"

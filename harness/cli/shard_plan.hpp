@@ -2,7 +2,7 @@
 // machines.
 #pragma once
 
-#include "harness/cli/command.hpp"
+#include "harness/cli/globals.hpp"
 #include "harness/cli/prepare_sweep.hpp"
 #include "harness/core/result.hpp"
 

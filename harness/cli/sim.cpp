@@ -14,7 +14,7 @@
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
-#include "harness/host/trace_format.hpp"
+#include "harness/host/file_format.hpp"
 #include "harness/loop/case_timing.hpp"
 #include "harness/report/flight_document.hpp"
 #include "harness/verify/simulate.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/cli/command.hpp"
+#include "harness/cli/globals.hpp"
 
 namespace attest::cli {
 

@@ -12,7 +12,7 @@
 #include "controller/actuation/mixer.hpp"
 #include "harness/casefile/parse.hpp"
 #include "harness/core/suggestion.hpp"
-#include "harness/host/trace_format.hpp"
+#include "harness/host/file_format.hpp"
 #include "harness/port/profiles.hpp"
 #include "harness/trace/provenance.hpp"
 
@@ -124,7 +124,7 @@ void override_parameter(const ParameterChange& change, Trace& trace) {
 
 Result<RecordedParts> RecordedParts::open(const std::filesystem::path& file,
                                           const std::string& profile, const std::string& mixer) {
-  auto reader = read_as<&TraceFormat::open>(file, TraceNeed::inputs_and_outputs);
+  auto reader = read_as<&FileFormat::open>(file, TraceNeed::inputs_and_outputs);
   if (!reader) return tl::unexpected(reader.error());
   auto subject = subject_of(**reader, file, profile, mixer);
   if (!subject) return tl::unexpected(subject.error());

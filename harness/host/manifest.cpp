@@ -144,7 +144,7 @@ std::string stem_of(const std::string& vector_id) {
 
 }  // namespace
 
-std::filesystem::path input_file(const std::string& vector_id, const TraceFormat& format) {
+std::filesystem::path input_file(const std::string& vector_id, const FileFormat& format) {
   return fmt::format("{}.{}", stem_of(vector_id), format.name);
 }
 
@@ -155,7 +155,7 @@ std::string wanted_output_file(const std::filesystem::path& folder, const std::s
 Result<std::filesystem::path> find_output_file(const std::filesystem::path& folder,
                                                const std::string& vector_id) {
   std::filesystem::path found;
-  for (const TraceFormat& format : trace_formats()) {
+  for (const FileFormat& format : file_formats()) {
     if (format.read_table == nullptr) continue;
     const auto path = folder / fmt::format("{}.out.{}", stem_of(vector_id), format.name);
     // A symbolic link counts as a file even if its target is missing: reading it gives an error.

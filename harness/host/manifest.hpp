@@ -18,7 +18,7 @@
 
 #include "harness/core/rate.hpp"
 #include "harness/core/result.hpp"
-#include "harness/host/trace_format.hpp"
+#include "harness/host/file_format.hpp"
 #include "harness/trace/channels.hpp"
 #include "harness/trace/trace.hpp"
 
@@ -56,7 +56,7 @@ Result<void> write_manifest(const std::filesystem::path& folder, const Manifest&
 std::string sha256_of_inputs(const Trace& trace);
 
 // The file of a vector's inputs, relative to the folder: "px4-v1.5.5/attitude/roll_30/250hz.csv".
-std::filesystem::path input_file(const std::string& vector_id, const TraceFormat& format);
+std::filesystem::path input_file(const std::string& vector_id, const FileFormat& format);
 
 // The file of a vector's outputs; empty if there is none. Errors: there are several.
 Result<std::filesystem::path> find_output_file(const std::filesystem::path& folder,

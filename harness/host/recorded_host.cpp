@@ -57,7 +57,7 @@ class RecordedHost final : public PortHost {
       return unanswered("not answered: the folder has no outputs of this vector");
     }
     // One row more than there are ticks shows that the file has too many.
-    const auto table = read_as<&TraceFormat::read_table>(*file, trace.samples.size() + 1);
+    const auto table = read_as<&FileFormat::read_table>(*file, trace.samples.size() + 1);
     if (!table) return unusable(table.error());
     auto set = set_recorded_outputs(*table, manifest_, file->string(), trace);
     if (!set) return unusable(set.error());
@@ -118,7 +118,7 @@ Result<std::unique_ptr<PortHost>> open_recorded_host(const std::filesystem::path
   if (!has_outputs(folder, *manifest)) {
     return fail_at(folder.string(),
                    fmt::format("has no outputs; write those of {} to {}, for example",
-                               input_file(manifest->vectors.begin()->first, trace_formats().front())
+                               input_file(manifest->vectors.begin()->first, file_formats().front())
                                    .replace_extension()
                                    .string(),
                                wanted_output_file(folder, manifest->vectors.begin()->first)));

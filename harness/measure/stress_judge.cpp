@@ -78,7 +78,7 @@ void judge_machine(const RealtimeBudget& budget, StressResult& stress) {
             "their release, budget 1%; {} of them because the step before runs too long; at most "
             "{:.3g} us on the idle machine",
             misses.late_starts, stress.ticks, budget.p99_latency_us, misses.late_starts_by_port,
-            static_cast<double>(stress.idle.max.count()) / 1000));
+            in_microseconds(stress.idle.max)));
   }
 }
 

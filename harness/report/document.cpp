@@ -14,7 +14,7 @@ namespace {
 
 bool begins_with_number(const std::string& text) {
   const std::size_t sign = text.starts_with('-') || text.starts_with('+') ? 1 : 0;
-  return text == "inf" ||
+  return text.substr(sign) == "inf" ||
          (text.size() > sign && std::isdigit(static_cast<unsigned char>(text[sign])) != 0);
 }
 
@@ -101,11 +101,9 @@ Colour colour_of(Verdict verdict) {
 }
 
 Cell::Cell(std::optional<Nanoseconds> time_, std::optional<Verdict> verdict_)
-    : text(time_ ? fmt::format("{:.4g}", microseconds(*time_)) : "-"),
+    : text(time_ ? fmt::format("{:.4g}", in_microseconds(*time_)) : "-"),
       verdict(verdict_),
       time(time_) {}
-
-double microseconds(Nanoseconds time) { return static_cast<double>(time.count()) / 1000; }
 
 std::string human_time(Nanoseconds time) {
   const auto ns = static_cast<double>(time.count());

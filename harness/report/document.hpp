@@ -166,8 +166,6 @@ struct Document {
 // "8.13 us", "1.02 ms", "312 ns".
 std::string human_time(Nanoseconds time);
 
-double microseconds(Nanoseconds time);
-
 // The head, the notes and the tables. Ends with a newline. A table wider than `style` allows is
 // broken into several blocks of columns.
 std::string render_text(const Document& document, TerminalStyle style);

@@ -135,7 +135,7 @@ PlotMark period_mark(const StressResult& stress) {
 PlotGroup distributions(const StressRun& run, const StressResult& stress) {
   std::vector<PlotMark> latency = {{run.budget.p99_latency_us, "budget of p99"}};
   if (stress.cyclictest) {
-    latency.push_back({microseconds(stress.cyclictest->max), "cyclictest, max"});
+    latency.push_back({in_microseconds(stress.cyclictest->max), "cyclictest, max"});
   }
   std::vector<PlotMark> execution = {period_mark(stress)};
   if (run.budget.execution_us) execution.push_back({*run.budget.execution_us, "budget"});
@@ -161,7 +161,7 @@ PlotSeries longest(const StressResult& stress, const char* name, Figure figure) 
   PlotSeries series{name, {}, {}};
   for (const TimelinePart& part : stress.timeline.parts) {
     series.x.push_back(in_seconds(part.begin));
-    series.y.push_back(static_cast<float>(microseconds(part.*figure)));
+    series.y.push_back(static_cast<float>(in_microseconds(part.*figure)));
   }
   return series;
 }

@@ -38,7 +38,7 @@ GroupsByRate groups_of(const CorpusTimes& times) {
 
 std::optional<Verdict> against_budget(const TimeRun& run, Nanoseconds time) {
   if (!run.budget_us) return std::nullopt;
-  return microseconds(time) > *run.budget_us ? Verdict::fail : Verdict::pass;
+  return in_microseconds(time) > *run.budget_us ? Verdict::fail : Verdict::pass;
 }
 
 // A row for each module, because steps of different modules are not comparable.
@@ -186,11 +186,11 @@ Plot by_rate(const TimeRun& run, Module module) {
     series.y.push_back(static_cast<float>(time_us));
   };
   for (const auto& [rate_hz, all] : steps) {
-    add(rate_hz, microseconds(all.max()), slowest);
+    add(rate_hz, in_microseconds(all.max()), slowest);
     if (supports_percentile(all.count(), 0.99)) {
-      add(rate_hz, microseconds(all.percentile(0.99)), p99);
+      add(rate_hz, in_microseconds(all.percentile(0.99)), p99);
     }
-    add(rate_hz, microseconds(all.percentile(0.5)), median);
+    add(rate_hz, in_microseconds(all.percentile(0.5)), median);
     if (run.budget_us) add(rate_hz, *run.budget_us, budget);
   }
   Plot plot{fmt::format("Step times of the {} by loop rate", info_of(module).title), "us",

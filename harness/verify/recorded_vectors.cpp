@@ -42,7 +42,7 @@ Result<Manifest> manifest_for(const std::filesystem::path& folder, std::optional
                   manifest->fixed_step ? manifest->fixed_step->to_string() + " Hz" : "none"));
 }
 
-Result<void> write_vector(const std::filesystem::path& folder, const TraceFormat& format,
+Result<void> write_vector(const std::filesystem::path& folder, const FileFormat& format,
                           const Case& the_case, const std::string& id, Trace inputs) {
   const std::filesystem::path file = folder / input_file(id, format);
   std::error_code failed;
@@ -61,7 +61,7 @@ Result<void> write_vector(const std::filesystem::path& folder, const TraceFormat
 }  // namespace
 
 Result<std::size_t> write_recorded_vectors(const std::filesystem::path& folder,
-                                           const TraceFormat& format,
+                                           const FileFormat& format,
                                            const std::vector<SelectedCase>& cases,
                                            std::optional<Rate> fixed_step) {
   auto manifest = manifest_for(folder, fixed_step);
@@ -118,7 +118,7 @@ Result<RecordedVectors> check_recorded_vectors(const std::filesystem::path& fold
       }
       if (found.answered++ > 0) continue;
       found.first = file->string();
-      const auto table = read_as<&TraceFormat::read_table>(*file, std::size_t{1});
+      const auto table = read_as<&FileFormat::read_table>(*file, std::size_t{1});
       if (table) found.ignored = ignored_columns(*table, *manifest, the_case.module);
     }
   }

@@ -9,7 +9,7 @@
 #include "harness/casefile/select.hpp"
 #include "harness/core/result.hpp"
 #include "harness/host/declarations.hpp"
-#include "harness/host/trace_format.hpp"
+#include "harness/host/file_format.hpp"
 
 namespace attest {
 
@@ -20,7 +20,7 @@ namespace attest {
 // number of files. Errors: a file cannot be read or written; the manifest has another fixed step;
 // no vector is left.
 Result<std::size_t> write_recorded_vectors(const std::filesystem::path& folder,
-                                           const TraceFormat& format,
+                                           const FileFormat& format,
                                            const std::vector<SelectedCase>& cases,
                                            std::optional<Rate> fixed_step);
 

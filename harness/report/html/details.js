@@ -1,4 +1,4 @@
-// The details of the selected vector. page.js calls attest.showDetails().
+// The details of the selected vector. results.js calls attest.showDetails().
 'use strict';
 (() => {
   const {element, addPlots, removePlots} = attest;

@@ -12,8 +12,8 @@ namespace {
 constexpr double bars_per_decade = 20;
 
 int bar_of(const Histogram::Bucket& bucket) {
-  const double middle = std::sqrt(std::max(microseconds(bucket.from), 1e-3) *
-                                  std::max(microseconds(bucket.to), 1e-3));
+  const double middle = std::sqrt(std::max(in_microseconds(bucket.from), 1e-3) *
+                                  std::max(in_microseconds(bucket.to), 1e-3));
   return static_cast<int>(std::floor(bars_per_decade * std::log10(middle)));
 }
 

@@ -13,11 +13,11 @@
 ATTEST_EMBED(page_template, ATTEST_PAGE_TEMPLATE);
 ATTEST_EMBED(page_style, ATTEST_PAGE_STYLE);
 ATTEST_EMBED(results_style, ATTEST_RESULTS_STYLE);
-ATTEST_EMBED(page_script, ATTEST_PAGE_SCRIPT);
+ATTEST_EMBED(results_script, ATTEST_RESULTS_SCRIPT);
 ATTEST_EMBED(details_script, ATTEST_DETAILS_SCRIPT);
-ATTEST_EMBED(plots_script, ATTEST_PLOTS_SCRIPT);
+ATTEST_EMBED(vector_plots_script, ATTEST_VECTOR_PLOTS_SCRIPT);
 ATTEST_EMBED(shared_script, ATTEST_SHARED_SCRIPT);
-ATTEST_EMBED(plot_page_script, ATTEST_PLOT_PAGE_SCRIPT);
+ATTEST_EMBED(plots_script, ATTEST_PLOTS_SCRIPT);
 ATTEST_EMBED(replay_script, ATTEST_REPLAY_SCRIPT);
 ATTEST_EMBED(dygraphs_script, ATTEST_DYGRAPHS_SCRIPT);
 ATTEST_EMBED(dygraphs_style, ATTEST_DYGRAPHS_STYLE);
@@ -35,7 +35,7 @@ std::string_view without_source_map(std::string_view text) {
 }
 
 // Runs before the body is shown. The class `scripted` hides the table of all results, so that a
-// browser does not lay it out; page.js replaces it by a list.
+// browser does not lay it out; results.js replaces it by a list.
 constexpr std::string_view boot_script = "document.documentElement.classList.add('scripted')";
 
 // 'sha256-...' of a script, as a content security policy names it.
@@ -100,11 +100,11 @@ void add_files(bool is_of_run, Values& page) {
                                            ATTEST_EMBEDDED(dygraphs_synchronizer),
                                            ATTEST_EMBEDDED(shared_script)};
   if (is_of_run)
-    scripts.insert(scripts.end(), {ATTEST_EMBEDDED(plots_script), ATTEST_EMBEDDED(details_script),
-                                   ATTEST_EMBEDDED(page_script)});
-  else
     scripts.insert(scripts.end(),
-                   {ATTEST_EMBEDDED(plot_page_script), ATTEST_EMBEDDED(replay_script)});
+                   {ATTEST_EMBEDDED(vector_plots_script), ATTEST_EMBEDDED(details_script),
+                    ATTEST_EMBEDDED(results_script)});
+  else
+    scripts.insert(scripts.end(), {ATTEST_EMBEDDED(plots_script), ATTEST_EMBEDDED(replay_script)});
   std::string hashes = policy_hash(boot_script);
   for (const std::string_view script : scripts) hashes += " " + policy_hash(script);
   set_text(page, "boot", boot_script);
@@ -186,7 +186,7 @@ Values result_to_data(const std::vector<Cell>& row) {
   return Values("cells", list_of(row, line_to_data));
 }
 
-// The legend; page.js reads it.
+// The legend; results.js reads it.
 Values verdicts() {
   Values list(Values::type::list);
   for (int i = 0; i < verdict_count; ++i) {

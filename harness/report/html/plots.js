@@ -1,258 +1,354 @@
-// The plots of a vector's signals.
+// The plots of a document. The animation moves and follows the cursor through `attest.plotGroups`.
 'use strict';
 (() => {
-  const {element, floats, colour, nearest, shown, styledAxes, onColoursChanged} = attest;
+  const {element, floats, colour, nearest, shown, styledAxes} = attest;
+  const content = JSON.parse(document.getElementById('plots').textContent);
+  const palette = ['expected', 'got', 'broken', 'pass', 'quiet', 'text'];
+  const patterns = {solid: null, dashed: [7, 3], dotted: [2, 3]};
 
-  let allPlots = null; // by the ids of vectors
-  attest.plotsOf = (id) => {
-    if (!allPlots) allPlots = JSON.parse(document.getElementById('plots').textContent || '{}');
-    return Object.hasOwn(allPlots, id) ? allPlots[id] : null;
-  };
-  attest.plottedVectors = () => (attest.plotsOf(''), Object.keys(allPlots));
+  const isOfPoints = (shape) => shape === 'points' || shape === 'scatter';
 
-  const decoded = (signal) => {
-    const curves = {};
-    for (const name of ['tick', 'time', 'got', 'want']) curves[name] = floats(signal[name]);
-    if (typeof signal.allowed === 'string') curves.allowed = floats(signal.allowed);
-    else if (typeof signal.allowed === 'number')
-      curves.allowed = curves.tick.map(() => signal.allowed);
-    return curves;
-  };
-
-  // dygraphs leaves gaps where a value is NaN. Infinity would spoil the axis.
-  const drawable = (value) => (Number.isFinite(value) ? value : NaN);
-  const band = (middle, half) => [
-    drawable(middle - half),
-    drawable(middle),
-    drawable(middle + half),
-  ];
-
-  const isFlag = (curves) => [...curves.got, ...curves.want].every((v) => v === 0 || v === 1);
-
-  // The line at the first deviation, and crosses where the port's value is not finite.
-  const marks = (curves, marked) => (context, area, plot) => {
-    if (marked !== null) {
-      const x = Math.round(plot.toDomXCoord(marked)) + 0.5;
-      context.strokeStyle = colour('fail');
-      context.lineWidth = 1;
-      context.setLineDash([4, 3]);
-      context.beginPath();
-      context.moveTo(x, area.y);
-      context.lineTo(x, area.y + area.h);
-      context.stroke();
-      context.setLineDash([]);
-    }
-    context.fillStyle = colour('broken');
-    context.font = 'bold 12px sans-serif';
-    curves.got.forEach((value, i) => {
-      const isHole = !Number.isFinite(value) && Number.isFinite(curves.want[i]);
-      if (isHole) context.fillText('\u00d7', plot.toDomXCoord(curves.time[i]) - 4, area.y + 11);
-    });
-  };
-
-  const commonOptions = (curves, marked) => ({
-    ...styledAxes(),
-    customBars: true,
-    stepPlot: isFlag(curves),
-    drawPoints: curves.tick.length <= 150,
-    pointSize: 2,
-    fillAlpha: 0.25,
-    underlayCallback: marks(curves, marked),
+  // The seventh series has the first colour again, so its line is dashed.
+  const styleOf = ({colour: number, pattern}) => ({
+    colour: colour(palette[number % palette.length]),
+    pattern: pattern === 'solid' && number >= palette.length ? [7, 3] : patterns[pattern],
+    width: pattern === 'solid' ? 2 : 1.5,
   });
 
-  const valuePlot = (place, curves, marked) => {
-    const allowed = curves.allowed || curves.tick.map(() => 0);
-    const rows = curves.time.map((time, i) => [
-      time,
-      band(curves.want[i], allowed[i]),
-      band(curves.got[i], 0),
+  const decoded = (plot) => {
+    const grids = plot.grids.map(floats);
+    const series = plot.series.map((one, i) => ({
+      id: `series ${i}`,
+      name: one.name,
+      x: grids[one.grid],
+      y: floats(one.y),
+      style: styleOf(one),
+    }));
+    const band = plot.band && {
+      name: plot.band.name,
+      x: grids[plot.band.grid],
+      low: floats(plot.band.low),
+      high: floats(plot.band.high),
+    };
+    return {...plot, series, band};
+  };
+
+  // dygraphs needs the same x for all series. null: the series has no sample at this x, and its
+  // line goes on.
+  const rowsOf = ({series, band, logarithmic_x}) => {
+    const lines = series.map(({x, y}) => ({x, y}));
+    if (band) lines.push({x: band.x, y: band.low}, {x: band.x, y: band.high});
+    const all = new Set(lines.map(({x}) => x));
+    const xs = all.size === 1 ? lines[0].x : [...new Set([...all].flat())].sort((a, b) => a - b);
+    const next = lines.map(() => 0);
+    const rows = xs.map((at, row) => [
+      at,
+      ...lines.map(({x, y}, i) => {
+        if (all.size === 1) return Number.isFinite(y[row]) ? y[row] : NaN;
+        if (x[next[i]] !== at) return null;
+        while (x[next[i] + 1] === at) ++next[i];
+        const value = y[next[i]++];
+        return Number.isFinite(value) ? value : NaN;
+      }),
     ]);
-    return new Dygraph(place, rows, {
-      ...commonOptions(curves, marked),
-      labels: ['time', 'expected', 'port'],
-      colors: [colour('expected'), colour('got')],
-      series: {expected: {strokeWidth: 3}, port: {strokeWidth: 1.5, strokePattern: [6, 3]}},
-    });
+    return logarithmic_x ? rows.filter(([x]) => x > 0) : rows;
   };
 
-  const deviationPlot = (place, curves, marked) => {
-    const rows = curves.time.map((time, i) => {
-      const allowed = curves.allowed ? curves.allowed[i] : 0;
-      return [time, band(0, allowed), band(curves.got[i] - curves.want[i], 0)];
-    });
-    return new Dygraph(place, rows, {
-      ...commonOptions(curves, marked),
-      labels: ['time', 'allowed', 'difference'],
-      colors: [colour('allowed'), colour('got')],
-      series: {allowed: {strokeWidth: 1}, difference: {strokeWidth: 1.5}},
-      xlabel: 'difference between port and expected value, over time from the first tick [s]',
-      xLabelHeight: 16,
-    });
+  // toDomXCoord() ignores a logarithmic x.
+  const placeOf = (plot, x) => {
+    const {x: left, w: width} = plot.getArea();
+    return left + plot.toPercentXCoord(x) * width;
   };
 
-  const key = (name, text) =>
-    element('span', {}, element('span', {className: `key ${name}`}), text);
-
-  // The values at the cursor, in place of the legend of dygraphs.
-  const reading = (curves, i) => {
-    if (i < 0) {
-      const parts = [key('want', 'expected'), '\u2003'];
-      if (curves.allowed) parts.push(key('allowed', 'tolerance'), '\u2003');
-      return [...parts, key('got', 'port')];
+  const drawBand = (context, plot, {x, low, high}) => {
+    context.fillStyle = colour('expected');
+    context.globalAlpha = 0.18;
+    context.beginPath();
+    x.forEach((at, i) => context.lineTo(placeOf(plot, at), plot.toDomYCoord(high[i])));
+    for (let i = x.length - 1; i >= 0; --i) {
+      context.lineTo(placeOf(plot, x[i]), plot.toDomYCoord(low[i]));
     }
-    const parts = [
-      `tick ${curves.tick[i]}, ${shown(curves.time[i])} s\u2003`,
-      key('want', `expected ${shown(curves.want[i])}`),
-      '\u2003',
-      key('got', `port ${shown(curves.got[i])}`),
-      '\u2003',
-      `difference ${shown(curves.got[i] - curves.want[i])}`,
-    ];
-    if (curves.allowed) parts.push(`, allowed ${shown(curves.allowed[i])}`);
-    return parts;
+    context.fill();
+    context.globalAlpha = 1;
   };
 
-  // Adds the elements of a signal. draw() must be called when the page has all elements, because
-  // dygraphs takes the width that they have then.
-  const addSignal = (place, signal, ticks, marked) => {
-    const curves = decoded(signal);
-    const line = element('p', {className: 'reading'});
-    const values = element('div', {
+  const drawMark = (context, area, plot, {x, text}) => {
+    const at = Math.round(placeOf(plot, x)) + 0.5;
+    if (at < area.x || at > area.x + area.w) return;
+    context.strokeStyle = context.fillStyle = colour('fail');
+    context.lineWidth = 1;
+    context.setLineDash([4, 3]);
+    context.beginPath();
+    context.moveTo(at, area.y);
+    context.lineTo(at, area.y + area.h);
+    context.stroke();
+    context.setLineDash([]);
+    context.font = '12px sans-serif';
+    const isRight = at + context.measureText(text).width + 6 > area.x + area.w;
+    context.textAlign = isRight ? 'right' : 'left';
+    context.fillText(text, at + (isRight ? -4 : 4), area.y + 12);
+  };
+
+  const underlay = ({band, marks}) => (context, area, plot) => {
+    context.save();
+    context.beginPath();
+    context.rect(area.x, area.y, area.w, area.h);
+    context.clip();
+    if (band) drawBand(context, plot, band);
+    for (const mark of marks) drawMark(context, area, plot, mark);
+    context.restore();
+  };
+
+  const drawBars = ({x, y, style}) => (event) => {
+    const {drawingContext: context, dygraph: plot, plotArea: area} = event;
+    const bottom = area.y + area.h;
+    context.fillStyle = context.strokeStyle = style.colour;
+    context.lineWidth = style.width;
+    context.setLineDash(style.pattern || []);
+    for (let i = 0; i + 1 < x.length; ++i) {
+      if (!(y[i] > 0)) continue;
+      const left = placeOf(plot, x[i]);
+      const top = plot.toDomYCoord(y[i]);
+      const width = placeOf(plot, x[i + 1]) - left;
+      context.globalAlpha = 0.25;
+      context.fillRect(left, top, width, bottom - top);
+      context.globalAlpha = 1;
+      context.strokeRect(left, top, width, bottom - top);
+    }
+    context.setLineDash([]);
+  };
+
+  // A circle, a square, a triangle and a cross.
+  const symbols = [
+    (context, x, y) => context.arc(x, y, 4, 0, 7),
+    (context, x, y) => context.rect(x - 3.5, y - 3.5, 7, 7),
+    (context, x, y) => {
+      context.moveTo(x - 4.5, y + 4);
+      context.lineTo(x + 4.5, y + 4);
+      context.lineTo(x, y - 4.5);
+      context.closePath();
+    },
+    (context, x, y) => {
+      context.moveTo(x - 4, y - 4);
+      context.lineTo(x + 4, y + 4);
+      context.moveTo(x + 4, y - 4);
+      context.lineTo(x - 4, y + 4);
+    },
+  ];
+
+  const drawPoints = ({style}, i) => ({drawingContext: context, points}) => {
+    context.strokeStyle = style.colour;
+    context.lineWidth = 1.75;
+    for (const {canvasx, canvasy} of points) {
+      if (!Number.isFinite(canvasy)) continue;
+      context.beginPath();
+      symbols[i % symbols.length](context, canvasx, canvasy);
+      context.stroke();
+    }
+  };
+
+  // The dots are translucent, so that dense places look darker.
+  const drawDots = ({style}) => ({drawingContext: context, points}) => {
+    context.fillStyle = style.colour;
+    context.globalAlpha = 0.45;
+    for (const {canvasx, canvasy} of points) {
+      if (!Number.isFinite(canvasy)) continue;
+      context.beginPath();
+      context.arc(canvasx, canvasy, 2, 0, 7);
+      context.fill();
+    }
+    context.globalAlpha = 1;
+  };
+
+  const seriesOptions = ({shape}, series, i) => {
+    const {colour: color, pattern, width} = series.style;
+    const options = {color, strokePattern: pattern, strokeWidth: width};
+    if (shape === 'bars') return {...options, plotter: drawBars(series)};
+    if (shape === 'scatter' && i === 0) return {...options, plotter: drawDots(series)};
+    if (isOfPoints(shape)) return {...options, plotter: drawPoints(series, i)};
+    return options;
+  };
+
+  // With the default range of a logarithmic axis, the lowest bar would have no height.
+  const valueRange = ({shape, logarithmic_y, series}) => {
+    if (shape !== 'bars' || !logarithmic_y) return null;
+    const values = series.flatMap(({y}) => y).filter((value) => value > 0);
+    if (values.length === 0) return null;
+    return [Math.min(...values) / 2, Math.max(...values) * 2];
+  };
+
+  const optionsOf = (plot, xLabel) => {
+    const options = styledAxes();
+    options.axes.x.logscale = plot.logarithmic_x;
+    const hidden = plot.band ? ['low', 'high'] : [];
+    const isLong = plot.series.some(({x}) => x.length > 60);
+    return {
+      ...options,
+      labels: ['x', ...plot.series.map(({id}) => id), ...hidden],
+      series: Object.fromEntries([
+        ...plot.series.map((series, i) => [series.id, seriesOptions(plot, series, i)]),
+        ...hidden.map((id) => [id, {color: 'rgba(0,0,0,0)'}]),
+      ]),
+      connectSeparatedPoints: plot.shape === 'line' || plot.shape === 'steps',
+      stepPlot: plot.shape === 'steps',
+      drawPoints: plot.shape === 'line' && !isLong,
+      pointSize: 2.5,
+      includeZero: (plot.shape === 'bars' || plot.shape === 'points') && !plot.logarithmic_y,
+      xRangePad: plot.logarithmic_x ? 0 : options.xRangePad, // the padding may reach below 0
+      valueRange: valueRange(plot),
+      logscale: plot.logarithmic_y,
+      underlayCallback: underlay(plot),
+      ...(xLabel ? {xlabel: xLabel, xLabelHeight: 16} : {}),
+    };
+  };
+
+  const keyOf = ({style}, shape) => {
+    const key = element('span', {className: 'key'});
+    key.style.borderColor = style.colour;
+    const isDotted = style.pattern === patterns.dotted;
+    key.style.borderTopStyle = isDotted ? 'dotted' : style.pattern ? 'dashed' : 'solid';
+    if (shape === 'bars') key.style.borderTopWidth = '0.6em';
+    return key;
+  };
+
+  const symbolKey = ({style}, i, shape) => {
+    const isDot = shape === 'scatter' && i === 0;
+    const symbol = isDot ? '\u25cf' : ['\u25cb', '\u25a1', '\u25b3', '\u2715'][i % 4];
+    const key = element('span', {}, symbol);
+    key.style.color = style.colour;
+    return key;
+  };
+
+  // A button for each series, which hides or shows the series. It also has the value at the cursor.
+  const legendOf = (plot, toggle) => {
+    const values = plot.series.map(() => element('span', {className: 'at-cursor'}));
+    const buttons = plot.series.map((series, i) => {
+      const key = isOfPoints(plot.shape)
+        ? symbolKey(series, i, plot.shape)
+        : keyOf(series, plot.shape);
+      const button = element('button', {type: 'button'}, key, `${series.name} `, values[i]);
+      button.setAttribute('aria-pressed', 'true');
+      button.addEventListener('click', () => {
+        const isShown = button.getAttribute('aria-pressed') !== 'true';
+        button.setAttribute('aria-pressed', String(isShown));
+        toggle(i, isShown);
+      });
+      return button;
+    });
+    const band = element('span', {className: 'key allowed'});
+    const place = element('span');
+    const names = plot.band ? [element('span', {}, band, plot.band.name)] : [];
+    const line = element('p', {className: 'reading legend-of-plot'}, ...buttons, ...names, place);
+    const read = (x) => {
+      plot.series.forEach((series, i) => {
+        const at = nearest(series.x, x);
+        const value = series.y[at];
+        const isGap = isOfPoints(plot.shape) && Number.isNaN(value);
+        values[i].textContent = isGap ? '-' : shown(value);
+      });
+      place.textContent = `at ${shown(x)}`;
+    };
+    return {line, read};
+  };
+
+  // Adds the elements of a plot. Its draw() must be called when the page has all elements, because
+  // dygraphs takes the width that the box has then: a box that is alone in its row is wider.
+  const addPlot = (place, data, xLabel, group) => {
+    const plot = decoded(data);
+    const unit = plot.unit ? ` [${plot.unit}]` : '';
+    const box = element('div', {
       className: 'values',
       role: 'img',
-      'aria-label': `${signal.name}: the port's values and the expected ones over time`,
+      tabIndex: 0,
+      'aria-label': `${plot.title}${unit}. The arrow keys move the cursor.`,
     });
-    const deviation = element('div', {
-      className: 'deviation',
-      role: 'img',
-      'aria-label': `${signal.name}: difference between port and expected value over time`,
+    let drawn;
+    const {line, read} = legendOf(plot, (i, isShown) => drawn.setVisibility(i, isShown));
+    const title = element('h3', {}, plot.title + unit, ' ', element('small', {}, plot.note));
+    place.append(element('div', {className: 'plot'}, title, line, box));
+    const rows = rowsOf(plot);
+    const draw = () => {
+      drawn = new Dygraph(box, rows, {
+        ...optionsOf(plot, xLabel),
+        highlightCallback: (_, x) => group.moveTo(x),
+      });
+      return drawn;
+    };
+    const xs = rows.map(([x]) => x);
+    box.addEventListener('keydown', (event) => {
+      const at = nearest(xs, group.cursor ?? xs[0]);
+      const to = {ArrowLeft: at - 1, ArrowRight: at + 1, Home: 0, End: xs.length - 1}[event.key];
+      if (to === undefined) return;
+      event.preventDefault();
+      group.moveTo(xs[Math.min(Math.max(to, 0), xs.length - 1)]);
     });
-    const count =
-      signal.deviating > 0
-        ? `${signal.deviating} of ${ticks} ticks deviate, from tick ${signal.first_tick} on`
-        : 'agrees with the reference at all ticks';
-    const drawn =
-      curves.tick.length < ticks
-        ? `; ${curves.tick.length} ticks are drawn, with the smallest and largest values`
-        : '';
-    place.append(
-      element(
-        'div',
-        {className: 'plot'},
-        element(
-          'h3',
-          {},
-          signal.name.replace(/^out\//, ''),
-          ' ',
-          element('small', {}, `${signal.stage}: ${count}${drawn}`)
-        ),
-        line,
-        values,
-        deviation
-      )
-    );
-    line.replaceChildren(...reading(curves, -1));
-    const draw = () => [
-      valuePlot(values, curves, marked),
-      deviationPlot(deviation, curves, marked),
-    ];
-    const follow = (time) => {
-      const i = time === null ? -1 : nearest(curves.time, time);
-      line.replaceChildren(...reading(curves, i));
+    return {
+      draw,
+      read,
+      select: (x) => drawn.setSelection(nearest(xs, x)),
+      destroy: () => drawn.destroy(),
     };
-    return {draw, follow, curves};
   };
 
-  let drawnPlots = [];
-  const removePlots = () => {
-    for (const plot of drawnPlots) plot.destroy();
-    drawnPlots = [];
-    onColoursChanged(() => {});
-  };
-
-  const synchronise = (signals) => {
-    if (drawnPlots.length > 1) Dygraph.synchronize(drawnPlots, {range: false});
-    for (const plot of drawnPlots) {
-      const before = plot.getFunctionOption('highlightCallback');
-      plot.updateOptions(
-        {
-          highlightCallback: (...args) => {
-            if (before) before(...args);
-            for (const signal of signals) signal.follow(args[1]);
-          },
-          unhighlightCallback: () => {
-            for (const plotted of drawnPlots) plotted.clearSelection();
-            for (const signal of signals) signal.follow(null);
-          },
-        },
-        true
-      );
+  // The plots of a group have one cursor.
+  class Group {
+    constructor(data) {
+      this.data = data;
+      this.cursor = null;
+      this.plots = [];
+      this.onCursor = () => {}; // called when the user moves the cursor
+      this.place = element('div', {className: 'group'});
     }
-  };
 
-  const zoomTo = (range) => {
-    for (const plot of drawnPlots) plot.updateOptions({dateWindow: range});
-  };
-
-  const zoomButtons = (signals, marked) => {
-    const times = signals[0].curves.time;
-    const end = times[times.length - 1];
-    const near = () => {
-      const at = times.findIndex((time) => time >= marked);
-      const step = times.length > 1 ? (end - times[0]) / (times.length - 1) : 1;
-      zoomTo([
-        Math.max(times[0], times[Math.max(0, at)] - 12 * step),
-        Math.min(end, marked + 24 * step),
-      ]);
-    };
-    return element(
-      'p',
-      {className: 'tools'},
-      element('button', {type: 'button', onclick: near}, 'Zoom to the first deviation'),
-      element('button', {type: 'button', onclick: () => zoomTo(null)}, 'Whole trace'),
-      element(
-        'span',
-        {className: 'hint'},
-        'Drag to zoom, shift-drag to pan, double-click for the whole trace.'
-      )
-    );
-  };
-
-  const addPlots = (place, row, plotted) => {
-    removePlots();
-    place.replaceChildren();
-    const first = plotted.signals[0];
-    const ticks = floats(first.tick);
-    const at = ticks.indexOf(Number(row.tick));
-    const marked = at < 0 ? null : floats(first.time)[at];
-    const tools = element('div');
-    place.append(tools);
-    if (!plotted.repeated) {
-      place.append(
-        element(
-          'p',
-          {className: 'error'},
-          'For these plots the port ran once more, and it gave other outputs than before.'
-        )
-      );
+    // Replaces the elements of the group.
+    lay() {
+      for (const plot of this.plots.splice(0)) plot.destroy();
+      this.place.replaceChildren();
+      this.data.plots.forEach((plot, i, all) => {
+        const xLabel = all.length <= 4 || i === all.length - 1 ? this.data.x_label : '';
+        this.plots.push(addPlot(this.place, plot, xLabel, this));
+      });
     }
-    const signals = plotted.signals.map((signal) =>
-      addSignal(place, signal, plotted.ticks, marked)
-    );
-    if (marked !== null) tools.append(zoomButtons(signals, marked));
-    if (plotted.hidden > 0) {
-      place.append(
-        element(
-          'p',
-          {className: 'hint'},
-          `${plotted.hidden} more signals deviate and are not plotted.`
-        )
-      );
-    }
-    drawnPlots = signals.flatMap((signal) => signal.draw());
-    synchronise(signals);
-    onColoursChanged(() => addPlots(place, row, plotted));
-  };
 
-  Object.assign(attest, {addPlots, removePlots});
+    draw() {
+      const drawn = this.plots.map((plot) => plot.draw());
+      if (drawn.length > 1) Dygraph.synchronize(drawn, {range: false, selection: false});
+      if (this.cursor !== null) this.show(this.cursor);
+    }
+
+    show(x) {
+      this.cursor = x;
+      for (const plot of this.plots) {
+        plot.read(x);
+        plot.select(x);
+      }
+    }
+
+    moveTo(x) {
+      this.show(x);
+      this.onCursor(x);
+    }
+  }
+
+  const groups = content.groups.map((group) => new Group(group));
+  const place = document.getElementById('plots-of-page');
+  for (const group of groups) {
+    if (group.data.title) place.append(element('h2', {}, group.data.title));
+    place.append(group.place);
+  }
+  if (place) {
+    const hint =
+      'Drag in a plot to zoom, shift-drag to pan, double-click for the whole range. ' +
+      'A click on a name hides the line.';
+    place.prepend(element('p', {className: 'hint'}, hint));
+  }
+  const drawAll = () => {
+    for (const group of groups) group.lay();
+    for (const group of groups) group.draw();
+  };
+  drawAll();
+  attest.onColoursChanged(drawAll);
+  attest.drawPlots = drawAll;
+  attest.plotGroups = groups;
+  attest.replay = content.replay;
 })();

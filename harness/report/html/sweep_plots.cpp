@@ -222,7 +222,7 @@ void add_band(const std::string& metric, const SweepFile& sweep, Plot& plot) {
                        std::vector(x.size(), high)};
 }
 
-// Both series have the same x. With different x, plot_page.js would merge samples with equal x.
+// Both series have the same x. With different x, plots.js would merge samples with equal x.
 Plot scatter_of(const Pair& pair, const SweepFile& sweep, const SampleColumns& columns,
                 const SampleData& data, const std::set<std::uint64_t>& drawn,
                 const std::set<std::uint64_t>& worst) {

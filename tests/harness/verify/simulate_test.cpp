@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/core/file.hpp"
-#include "harness/host/trace_format.hpp"
+#include "harness/host/file_format.hpp"
 #include "harness/loop/case_timing.hpp"
 #include "harness/trace/csv.hpp"
 #include "tests/harness/core/temporary_directory.hpp"

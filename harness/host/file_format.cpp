@@ -1,4 +1,4 @@
-#include "harness/host/trace_format.hpp"
+#include "harness/host/file_format.hpp"
 
 #include <algorithm>
 #include <array>
@@ -48,14 +48,14 @@ Result<void> write_csv_trace(AtomicFile file, const Trace& trace) {
 
 // To add a format: a file with its functions, and its row here.
 constexpr std::array formats{
-    TraceFormat{"csv", "", "CSV", nullptr, open_csv, nullptr, signals_of_csv, read_csv_table,
-                write_csv_trace},
-    TraceFormat{"ulg", "ulog", "ULog",
-                [](std::string_view bytes) { return bytes.starts_with(ulog::file_magic); }, nullptr,
-                read_flight_log, signals_of_log, nullptr, write_log},
-    TraceFormat{"mat", "", "MAT",
-                [](std::string_view bytes) { return bytes.starts_with("MATLAB "); }, nullptr,
-                nullptr, nullptr, read_mat, write_mat},
+    FileFormat{"csv", "", "CSV", nullptr, open_csv, nullptr, signals_of_csv, read_csv_table,
+               write_csv_trace},
+    FileFormat{"ulg", "ulog", "ULog",
+               [](std::string_view bytes) { return bytes.starts_with(ulog::file_magic); }, nullptr,
+               read_flight_log, signals_of_log, nullptr, write_log},
+    FileFormat{"mat", "", "MAT",
+               [](std::string_view bytes) { return bytes.starts_with("MATLAB "); }, nullptr,
+               nullptr, nullptr, read_mat, write_mat},
 };
 
 // Empty for a pipe.
@@ -68,33 +68,33 @@ std::string first_bytes_of(const std::filesystem::path& path) {
   return {begin.data(), static_cast<std::size_t>(file.gcount())};
 }
 
-std::vector<std::string> names_of_all(bool (*can)(const TraceFormat& format)) {
+std::vector<std::string> names_of_all(bool (*can)(const FileFormat& format)) {
   std::vector<std::string> names;
-  for (const TraceFormat& format : formats) {
+  for (const FileFormat& format : formats) {
     if (can(format)) names.emplace_back(format.name);
   }
   return names;
 }
 
-bool has_tables(const TraceFormat& format) { return format.read_table != nullptr; }
-bool is_written(const TraceFormat& format) { return format.write != nullptr; }
+bool has_tables(const FileFormat& format) { return format.read_table != nullptr; }
+bool is_written(const FileFormat& format) { return format.write != nullptr; }
 
 }  // namespace
 
-std::span<const TraceFormat> trace_formats() { return formats; }
+std::span<const FileFormat> file_formats() { return formats; }
 
-const TraceFormat& format_for(const std::filesystem::path& path) {
+const FileFormat& format_for(const std::filesystem::path& path) {
   const std::string ending = path.extension().string();
-  const auto found = std::find_if(formats.begin(), formats.end(), [&](const TraceFormat& format) {
+  const auto found = std::find_if(formats.begin(), formats.end(), [&](const FileFormat& format) {
     return ending.size() > 1 &&
            (ending.substr(1) == format.name || ending.substr(1) == format.other_ending);
   });
   return found == formats.end() ? formats.front() : *found;
 }
 
-const TraceFormat& format_of(const std::filesystem::path& path) {
+const FileFormat& format_of(const std::filesystem::path& path) {
   const std::string bytes = first_bytes_of(path);
-  const auto found = std::find_if(formats.begin(), formats.end(), [&](const TraceFormat& format) {
+  const auto found = std::find_if(formats.begin(), formats.end(), [&](const FileFormat& format) {
     return format.begins != nullptr && format.begins(bytes);
   });
   return found == formats.end() ? format_for(path) : *found;
@@ -105,8 +105,8 @@ std::string written_endings() {
   return fmt::format(".{}", fmt::join(names.begin() + 1, names.end(), ", ."));
 }
 
-Result<const TraceFormat*> parse_table_format(std::string_view name) {
-  for (const TraceFormat& format : formats) {
+Result<const FileFormat*> parse_table_format(std::string_view name) {
+  for (const FileFormat& format : formats) {
     if (format.name == name && has_tables(format)) return &format;
   }
   const auto names = names_of_all(has_tables);
@@ -114,14 +114,14 @@ Result<const TraceFormat*> parse_table_format(std::string_view name) {
                           fmt::join(names, ", ")));
 }
 
-tl::unexpected<Error> wrong_format(const std::filesystem::path& path, const TraceFormat& format,
-                                   bool (*can)(const TraceFormat& format)) {
+tl::unexpected<Error> wrong_format(const std::filesystem::path& path, const FileFormat& format,
+                                   bool (*can)(const FileFormat& format)) {
   return fail_at(path.string(), fmt::format("is a {} file; this needs one of the format {}",
                                             format.title, fmt::join(names_of_all(can), " or ")));
 }
 
 Result<void> write_trace(AtomicFile file, const Trace& trace) {
-  const TraceFormat& format = format_for(file.path());
+  const FileFormat& format = format_for(file.path());
   if (is_written(format)) return format.write(std::move(file), trace);
   return wrong_format(file.path(), format, is_written);
 }

@@ -1,4 +1,4 @@
-#include "harness/host/trace_format.hpp"
+#include "harness/host/file_format.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -33,7 +33,7 @@ Trace two_ticks() {
   return trace;
 }
 
-class TraceFormatTest : public testing::Test {
+class FileFormatTest : public testing::Test {
  protected:
   std::filesystem::path path(const std::string& name) const { return directory_.path() / name; }
 
@@ -42,7 +42,7 @@ class TraceFormatTest : public testing::Test {
   }
 
   Result<Table> read(const std::string& name) const {
-    return read_as<&TraceFormat::read_table>(path(name), std::size_t{100});
+    return read_as<&FileFormat::read_table>(path(name), std::size_t{100});
   }
   Result<Table> read(const std::string& name, const std::string& bytes) const {
     EXPECT_TRUE(write_file(path(name), bytes));
@@ -57,7 +57,7 @@ class TraceFormatTest : public testing::Test {
   TemporaryDirectory directory_;
 };
 
-TEST_F(TraceFormatTest, TablesReadBackTheSameInEachFormat) {
+TEST_F(FileFormatTest, TablesReadBackTheSameInEachFormat) {
   const Table all = table_of(two_ticks());
   for (const std::string name : {"a.csv", "a.mat"}) {
     ASSERT_TRUE(write(name));
@@ -80,11 +80,11 @@ TEST_F(TraceFormatTest, TablesReadBackTheSameInEachFormat) {
   }
 }
 
-TEST_F(TraceFormatTest, TheFirstBytesChooseItAndElseTheEnding) {
+TEST_F(FileFormatTest, TheFirstBytesChooseItAndElseTheEnding) {
   ASSERT_TRUE(write("a.mat"));
   ASSERT_TRUE(write("a.ulog"));
   for (const std::string name : {"a.mat", "a.ulog"}) {
-    const TraceFormat& format = format_of(path(name));
+    const FileFormat& format = format_of(path(name));
     EXPECT_NE(format.name, "csv");
     std::filesystem::rename(path(name), path("b.csv"));
     EXPECT_EQ(format_of(path("b.csv")).name, format.name);
@@ -93,15 +93,15 @@ TEST_F(TraceFormatTest, TheFirstBytesChooseItAndElseTheEnding) {
   EXPECT_EQ(format_of(path("missing")).name, "csv");
 }
 
-TEST_F(TraceFormatTest, WhatAFormatCannotDoIsAnError) {
+TEST_F(FileFormatTest, WhatAFormatCannotDoIsAnError) {
   ASSERT_TRUE(write("a.mat"));
-  EXPECT_EQ(read_as<&TraceFormat::open>(path("a.mat"), TraceNeed::outputs).error().message,
+  EXPECT_EQ(read_as<&FileFormat::open>(path("a.mat"), TraceNeed::outputs).error().message,
             "is a MAT file; this needs one of the format csv");
-  EXPECT_EQ(read_as<&TraceFormat::read_signals>(path("a.mat")).error().message,
+  EXPECT_EQ(read_as<&FileFormat::read_signals>(path("a.mat")).error().message,
             "is a MAT file; this needs one of the format csv or ulg");
 }
 
-TEST_F(TraceFormatTest, ADamagedMatFileIsAnErrorOrLacksVariables) {
+TEST_F(FileFormatTest, ADamagedMatFileIsAnErrorOrLacksVariables) {
   ASSERT_TRUE(write("a.mat"));
   const std::string whole = read_file(path("a.mat")).value();
   const std::size_t columns = read("a.mat")->size();
@@ -112,7 +112,7 @@ TEST_F(TraceFormatTest, ADamagedMatFileIsAnErrorOrLacksVariables) {
   EXPECT_THAT(error("b.mat", "timestamp,x\n"), HasSubstr("is no MAT file"));
 }
 
-TEST_F(TraceFormatTest, AMatFileThatEndsInsideAVariableIsCutOff) {
+TEST_F(FileFormatTest, AMatFileThatEndsInsideAVariableIsCutOff) {
   ASSERT_TRUE(write("a.mat"));
   const std::string whole = read_file(path("a.mat")).value();
   const std::size_t columns = read("a.mat")->size();
@@ -162,7 +162,7 @@ std::string with_compressed_variables(const std::string& mat, std::size_t missin
 }
 
 // libmatio returns zeros, or other bytes of the file or of its memory.
-TEST_F(TraceFormatTest, AMatVariableWithFewerValuesThanItsDimensionsIsAnError) {
+TEST_F(FileFormatTest, AMatVariableWithFewerValuesThanItsDimensionsIsAnError) {
   ASSERT_TRUE(write("a.mat"));
   const std::string whole = read_file(path("a.mat")).value();
   const std::size_t columns = read("a.mat")->size();
@@ -180,7 +180,7 @@ TEST_F(TraceFormatTest, AMatVariableWithFewerValuesThanItsDimensionsIsAnError) {
 }
 
 // Those with doubles, floats, and bytes, whose values are in the tag.
-TEST_F(TraceFormatTest, EachVariableOfAMatFileIsChecked) {
+TEST_F(FileFormatTest, EachVariableOfAMatFileIsChecked) {
   ASSERT_TRUE(write("a.mat"));
   const std::string whole = read_file(path("a.mat")).value();
   std::size_t variables = 0;
@@ -195,7 +195,7 @@ TEST_F(TraceFormatTest, EachVariableOfAMatFileIsChecked) {
   EXPECT_EQ(variables, table_of(two_ticks()).size());
 }
 
-TEST_F(TraceFormatTest, ACsvTableMayHaveRowNumbersWithoutAName) {
+TEST_F(FileFormatTest, ACsvTableMayHaveRowNumbersWithoutAName) {
   const auto table = read("a.csv", ",x,y\n0,1.5,+2e3\n1,nan,-inf\n");
   ASSERT_TRUE(table) << table.error().to_string();
   ASSERT_EQ(table->size(), 3u);

@@ -21,7 +21,7 @@
 namespace attest {
 
 // A function that is null: attest cannot do this with files of the format.
-struct TraceFormat {
+struct FileFormat {
   using Path = std::filesystem::path;
 
   std::string_view name;                         // "ulg", also the ending of its files
@@ -41,37 +41,35 @@ struct TraceFormat {
 };
 
 // The first one is CSV.
-std::span<const TraceFormat> trace_formats();
+std::span<const FileFormat> file_formats();
 
 // The format by which a file of that name is written: that of the ending, or else CSV.
-const TraceFormat& format_for(const std::filesystem::path& path);
+const FileFormat& format_for(const std::filesystem::path& path);
 // The format of a file to read: that of its first bytes. If no format begins so, and for a pipe,
 // whose bytes can be read only once: same as format_for().
-const TraceFormat& format_of(const std::filesystem::path& path);
+const FileFormat& format_of(const std::filesystem::path& path);
 
 // For help: ".ulg, .mat", the endings of the formats other than CSV in which attest writes traces.
 std::string written_endings();
 
 // Errors: the format of this name does not have tables, or is unknown.
-Result<const TraceFormat*> parse_table_format(std::string_view name);
+Result<const FileFormat*> parse_table_format(std::string_view name);
 
 // An error that names the formats that can do what `can` says.
-tl::unexpected<Error> wrong_format(const std::filesystem::path& path, const TraceFormat& format,
-                                   bool (*can)(const TraceFormat& format));
+tl::unexpected<Error> wrong_format(const std::filesystem::path& path, const FileFormat& format,
+                                   bool (*can)(const FileFormat& format));
 
-// Calls a function of the file's format: read_as<&TraceFormat::open>(path, TraceNeed::outputs).
+// Calls a function of the file's format: read_as<&FileFormat::open>(path, TraceNeed::outputs).
 // Errors: those of the function; the format does not have it.
 template <auto function, typename... Arguments>
 auto read_as(const std::filesystem::path& path, const Arguments&... arguments)
-    -> std::invoke_result_t<decltype(TraceFormat{}.*function), decltype(path),
-                            const Arguments&...> {
-  const TraceFormat& format = format_of(path);
+    -> std::invoke_result_t<decltype(FileFormat{}.*function), decltype(path), const Arguments&...> {
+  const FileFormat& format = format_of(path);
   if (format.*function != nullptr) return (format.*function)(path, arguments...);
-  return wrong_format(path, format,
-                      [](const TraceFormat& one) { return one.*function != nullptr; });
+  return wrong_format(path, format, [](const FileFormat& one) { return one.*function != nullptr; });
 }
 
-// Writes the file in the format of its name. Errors: those of TraceFormat::write; the format has no
+// Writes the file in the format of its name. Errors: those of FileFormat::write; the format has no
 // such function.
 Result<void> write_trace(AtomicFile file, const Trace& trace);
 

@@ -1,0 +1,87 @@
+#include "harness/cli/globals.hpp"
+
+#include <cstdio>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "harness/core/interrupt.hpp"
+#include "harness/report/read_report.hpp"
+
+namespace attest::cli {
+namespace {
+
+// The vectors of `cases` that failed in a report, and those without which they may pass. Errors:
+// the file is no report, or no such vector failed.
+Result<std::vector<SelectedCase>> failed_in(const std::string& report,
+                                            std::vector<SelectedCase> cases) {
+  const auto earlier = read_report(report);
+  if (!earlier) return tl::unexpected(earlier.error());
+  std::set<std::string> ids;
+  for (const VectorResult& result : earlier->results) {
+    if (!fails_a_run(result.verdict)) continue;
+    ids.insert(result.id());
+    ids.insert(result.after.begin(), result.after.end());
+  }
+  cases = keep_vectors(std::move(cases), ids);
+  if (!cases.empty()) return cases;
+  return fail_at(report, "no selected vector failed in it; run without --rerun-failed");
+}
+
+}  // namespace
+
+int report_error(const Error& error) {
+  if (interrupted()) {  // a reader may have ended with another message
+    const bool says_more = error.message.starts_with("interrupted");
+    std::fputs(fmt::format("attest: {}\n", says_more ? error.message : "interrupted").c_str(),
+               stderr);
+    return exit_interrupted;
+  }
+  // Not through fmt::print: it throws when stderr cannot be written.
+  std::fputs(fmt::format("attest: error: {}\n", error.to_string()).c_str(), stderr);
+  return exit_usage;
+}
+
+std::string SelectionOptions::narrowing() const {
+  auto options = as_options({{"--filter", filters},
+                             {"--exclude", excludes},
+                             {"--group", groups},
+                             {"--rate", rates},
+                             {"--vehicle", vehicles},
+                             {"--plant", plants}});
+  if (!rerun_failed.empty()) options.push_back("--rerun-failed " + rerun_failed);
+  return fmt::format("{}", fmt::join(options, " "));
+}
+
+Result<std::vector<LoopRate>> parse_rates(const std::vector<std::string>& texts) {
+  std::vector<LoopRate> rates;
+  for (const std::string& text : texts) {
+    const auto rate = LoopRate::parse(text);
+    if (!rate) return tl::unexpected(rate.error());
+    rates.push_back(*rate);
+  }
+  return rates;
+}
+
+Result<std::vector<SelectedCase>> SelectionOptions::cases_in(const CaseFolders& folders) const {
+  Selection selection;
+  selection.filters = filters;
+  selection.excludes = excludes;
+  selection.groups = groups;
+  selection.profiles = profiles;
+  selection.vehicles = vehicles;
+  selection.plants = plants;
+  auto asked = parse_rates(rates);
+  if (!asked) return tl::unexpected(asked.error());
+  selection.rates = *std::move(asked);
+  const auto part = Shard::parse(shard);
+  if (!part) return tl::unexpected(part.error());
+  selection.shard = *part;
+  auto cases = select_cases(folders, selection);
+  if (!cases || rerun_failed.empty()) return cases;
+  return failed_in(rerun_failed, *std::move(cases));
+}
+
+}  // namespace attest::cli
