@@ -55,6 +55,8 @@ void print_result(const VectorResult& result, const std::string& title, std::str
   if (!result.reason.empty()) fmt::print(out, "  {}\n", one_line(result.reason));
 }
 
+bool is_replayed(const FileFormat& format) { return format.open || format.read_log; }
+
 class Replay {
  public:
   Replay(const ReplayOptions& options, const Globals& globals, Level level, std::string arithmetic)
@@ -89,7 +91,9 @@ class Replay {
  private:
   Result<void> replay(const std::string& file) {
     if (auto started = start(); !started) return started;
-    return format_of(file).read_log != nullptr ? replay_log(file) : replay_trace(file);
+    const FileFormat& format = format_of(file);
+    if (!is_replayed(format)) return wrong_format(file, format, is_replayed);
+    return format.read_log != nullptr ? replay_log(file) : replay_trace(file);
   }
 
   // Starts the port's process unless one runs. It is called before a file is read, because the

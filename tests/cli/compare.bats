@@ -190,7 +190,7 @@ load common
   for command in plot replay "compare a.csv"; do
     run "$ATTEST" $command table.csv
     [ "$status" -eq 2 ]
-    has "table.csv: is a MAT file; this needs one of the format csv"
+    has "table.csv: is a MAT file; this needs one of the format csv or ulg"
   done
 }
 

@@ -140,9 +140,11 @@ CHECK
   run "$ATTEST" stress --port "lib:$PORTS/port_crash.so" --rates 250 --duration 0.5 "${open[@]}"
   [ "$status" -eq 1 ]
   has "crash: the port's process "
-  for port in hang hangs_in_load hangs_in_create hangs_in_destroy; do
-    run timeout -k 1 100 "$ATTEST" stress --port "lib:$PORTS/port_$port.so" --rates 250 \
-      --duration 0.5 --timeout 0.5 "${open[@]}"
+  local port_and_duration # the flight of the first would take ten minutes
+  for port_and_duration in "hang 600" "hangs_in_load 0.5" "hangs_in_create 0.5" \
+    "hangs_in_destroy 0.5"; do
+    run timeout -k 1 100 "$ATTEST" stress --port "lib:$PORTS/port_${port_and_duration% *}.so" \
+      --rates 250 --duration "${port_and_duration#* }" --timeout 0.5 "${open[@]}"
     [ "$status" -eq 1 ]
     has "timeout: "
   done
