@@ -74,8 +74,8 @@ set(ATTEST_TEST_OPTIONS -O0 $<$<CONFIG:Debug>:-fno-sanitize=undefined>)
 function(attest_unit_tests name)
   cmake_parse_arguments(ARG "" "LABEL" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
-  target_link_libraries(${name} PRIVATE attest_flags attest_warnings ${ARG_LINK} GTest::gmock
-                                        GTest::gtest_main)
+  target_link_libraries(${name} PRIVATE attest_flags attest_warnings attest_property_seed
+                                        ${ARG_LINK} GTest::gmock GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE ATTEST_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_compile_options(${name} PRIVATE ${ATTEST_TEST_OPTIONS})
   # Smaller than in the rest: helpers of tests often have the same name, and the headers that take

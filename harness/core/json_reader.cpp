@@ -83,13 +83,9 @@ std::vector<std::string> JsonReader::texts(const char* key) {
 }
 
 double JsonReader::real(const char* key) {
-  const json& value = member(key);
-  if (value.is_number()) return value.get<double>();
-  if (value == "nan") return std::numeric_limits<double>::quiet_NaN();
-  if (value == "inf") return std::numeric_limits<double>::infinity();
-  if (value == "-inf") return -std::numeric_limits<double>::infinity();
-  wrong(key, "is not a number");
-  return 0;
+  const auto value = real_from(member(key));
+  if (!value) wrong(key, "is not a number");
+  return value.value_or(0);
 }
 
 void JsonReader::wrong(std::string message) {
@@ -104,6 +100,14 @@ json json_of(double value) {
   if (std::isnan(value)) return "nan";
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
   return value;
+}
+
+std::optional<double> real_from(const json& value) {
+  if (value.is_number()) return value.get<double>();
+  if (value == "nan") return std::numeric_limits<double>::quiet_NaN();
+  if (value == "inf") return std::numeric_limits<double>::infinity();
+  if (value == "-inf") return -std::numeric_limits<double>::infinity();
+  return std::nullopt;
 }
 
 }  // namespace attest

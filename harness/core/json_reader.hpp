@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,7 +46,8 @@ class JsonReader {
   std::string path_ = {};  // "key." of an object in an object
 };
 
-// The inverse of JsonReader::real().
+// JSON has no NaN and no infinity: they are the texts "nan", "inf" and "-inf".
 nlohmann::json json_of(double value);
+std::optional<double> real_from(const nlohmann::json& value);  // the inverse; else nothing
 
 }  // namespace attest

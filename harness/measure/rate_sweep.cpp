@@ -4,10 +4,10 @@
 #include <optional>
 #include <utility>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "harness/core/error_json.hpp"
+#include "harness/core/json_reader.hpp"
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/fixed_step.hpp"
 #include "harness/verify/judge.hpp"
@@ -124,7 +124,7 @@ std::string Codec<RateSweepResult>::encode(const Result<RateSweepResult>& result
     out["trials"] = nlohmann::json::array();
     for (const auto& [rate_hz, delay_ms, values, holds] : one.trials) {
       nlohmann::json numbers = nlohmann::json::array();
-      for (const double value : values) numbers.push_back(fmt::format("{}", value));
+      for (const double value : values) numbers.push_back(json_of(value));
       out["trials"].push_back({rate_hz, delay_ms, std::move(numbers), holds});
     }
     return out;
@@ -141,7 +141,7 @@ Result<RateSweepResult> Codec<RateSweepResult>::decode(const std::string& text) 
   for (const nlohmann::json& trial : in->at("trials")) {
     trials.push_back({trial[0].get<double>(), trial[1].get<double>(), {}, trial[3].get<bool>()});
     for (const nlohmann::json& value : trial[2]) {
-      trials.back().values.push_back(std::stod(value.get<std::string>()));
+      trials.back().values.push_back(real_from(value).value());
     }
   }
   return vector_result_from_json(in->at("result")).map([&](VectorResult result) {

@@ -2,14 +2,9 @@
 
 #include <bit>
 #include <cmath>
-#include <cstdlib>
 
 namespace attest::test {
 namespace {
-
-// The seed is fixed unless the user sets RC_PARAMS, so runs are reproducible. rapidcheck reads it
-// when the first property runs.
-[[maybe_unused]] const int seeded = setenv("RC_PARAMS", "seed=20160601", 0);
 
 constexpr std::uint32_t all_topics = 0x1ff;
 

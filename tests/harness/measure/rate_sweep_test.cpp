@@ -303,7 +303,7 @@ TEST(SweepCodec, AResultIsReadAsItWasWritten) {
   rate.result.verdict = Verdict::crash;
   rate.result.reason = "it went wrong";
   rate.lowest_rate_hz = -1;
-  rate.trials = {{333, 0.1, {0.25, unbounded}, false}, {20, 0, {}, false}};
+  rate.trials = {{333, 0.1, {0.25, 4.9e-324, unbounded}, false}, {20, 0, {}, false}};
   delay.largest_delay_ms = 7.3;
   using SweepCodec = Codec<RateSweepResult>;
   const auto rate_read = SweepCodec::decode(SweepCodec::encode(rate));
