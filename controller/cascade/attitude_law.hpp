@@ -2,16 +2,18 @@
 //
 // Tilt and yaw are separated. The tilt is corrected by the shortest rotation of the thrust axis. Of
 // the remaining yaw error only a share (MC_YAW_WEIGHT) is corrected, because yaw is slow. The rates
-// are proportional to the quaternion error between the attitude and this reduced target.
+// are proportional to the quaternion error between the attitude and this reduced target. In v1.18
+// the law tracks a reference model that follows the setpoint.
 //
 // Frames: W world NED, B body FRD, D desired body. q_WB maps body into world. Rates [rad/s]. The
-// state is the setpoint. No clock, no allocation; one thread at a time.
+// state is the setpoint or the model. No clock, no allocation; one thread at a time.
 #pragma once
 
 #include <cmath>
 #include <utility>
 
 #include "controller/cascade/gains.hpp"
+#include "controller/cascade/reference_model.hpp"
 #include "controller/cascade/rotation.hpp"
 #include "controller/elementary/elementary.hpp"
 #include "controller/mc_att_control/inline.hpp"
@@ -94,45 +96,72 @@ struct AttitudeStages {
   }
 };
 
-// Stages is a policy: the stages of the law, or a copy with one replaced.
-template <typename Scalar, typename Stages = AttitudeStages<Scalar>>
+// Stages and ModelStages are policies: the stages of the law, or copies with one replaced.
+template <typename Scalar, typename Stages = AttitudeStages<Scalar>,
+          typename ModelStages = ReferenceModelStages<Scalar>>
 class AttitudeLaw {
  public:
-  explicit AttitudeLaw(Stages stages = {}) : stages_(std::move(stages)) {}
+  using Q = Quaternion<Scalar>;
+  using Vector = Vector3<Scalar>;
 
-  void set_gains(const AttitudeGains<Scalar>& gains) { gains_ = gains; }
+  explicit AttitudeLaw(bool follows_model = false, Stages stages = {},
+                       ModelStages model_stages = {})
+      : follows_model_(follows_model),
+        model_(std::move(model_stages)),
+        stages_(std::move(stages)) {}
 
-  // q_d may have any norm; norm 0 makes the setpoint NaN. The yaw rate [rad/s] is about the world's
-  // z axis.
-  void set_setpoint(const Quaternion<Scalar>& q_d, Scalar yaw_rate) {
-    q_WD_ = stages_.setpoint(q_d);
-    yaw_rate_ = yaw_rate;
+  void set_gains(const AttitudeUnitGains<Scalar>& gains) {
+    gains_ = gains.attitude;
+    model_.set_gains(gains.model);
   }
 
-  void adapt_setpoint(const Quaternion<Scalar>& delta) { q_WD_ = stages_.adapted(delta, q_WD_); }
+  // q_d may have any norm; norm 0 makes the setpoint NaN. The yaw rate [rad/s] is about the world's
+  // z axis. Times are those of this setpoint and of the last one, which is 0 for the first.
+  // REQUIRES: set_gains() was called.
+  void set_setpoint(const Q& q_d, Scalar yaw_rate, std::uint64_t time_us, std::uint64_t last_us) {
+    const Q target = stages_.setpoint(q_d);
+    if (!follows_model_) {
+      q_WD_ = target;
+      yaw_rate_ = yaw_rate;
+    } else if (last_us == 0) {
+      q_WD_ = model_.start(target);
+    } else {
+      q_WD_ = model_.follow(q_WD_, target, yaw_rate, time_us - last_us);
+    }
+  }
+
+  void adapt_setpoint(const Q& delta) { q_WD_ = stages_.adapted(delta, q_WD_); }
 
   // The setpoint of the body rates [rad/s]. REQUIRES: set_gains() was called.
-  Vector3<Scalar> update(const Quaternion<Scalar>& q_WB) const;
+  Vector update(const Q& q_WB) const {
+    const Vector rates = stages_.proportional(error(q_WB), gains_);
+    return stages_.limit(follows_model_ ? model_.feed_forward(rates, q_WB, q_WD_)
+                                        : stages_.feed_forward(rates, q_WB, yaw_rate_),
+                         gains_);
+  }
 
  private:
+  Q error(const Q& q_WB) const;
+
+  bool follows_model_;
   AttitudeGains<Scalar> gains_{};
-  Quaternion<Scalar> q_WD_ = identity<Scalar>();
+  Q q_WD_ = identity<Scalar>();  // the setpoint, or the attitude of the reference model
   Scalar yaw_rate_ = Scalar(0);
+  ReferenceModel<Scalar, ModelStages> model_;
   [[no_unique_address]] Stages stages_;
 };
 
-template <typename Scalar, typename Stages>
-ATTEST_INLINE Vector3<Scalar> AttitudeLaw<Scalar, Stages>::update(
-    const Quaternion<Scalar>& q_WB) const {
-  using Q = Quaternion<Scalar>;
+// The rotation that the law corrects, in body axes: to the setpoint with a share of its yaw error.
+template <typename Scalar, typename Stages, typename ModelStages>
+ATTEST_INLINE Quaternion<Scalar> AttitudeLaw<Scalar, Stages, ModelStages>::error(
+    const Q& q_WB) const {
   const Q tilt = stages_.tilt_rotation(q_WB, q_WD_);
   const Q tilted = stages_.is_opposite(tilt) ? q_WD_ : stages_.tilted(tilt, q_WB);
   const Q yaw = stages_.remaining_yaw(tilted, q_WD_);
   const Scalar w = stages_.in_domain(yaw[0]);
   const Scalar z = stages_.in_domain(yaw[3]);
   const Q target = stages_.target(tilted, stages_.weighted_yaw(w, z, gains_.yaw_weight));
-  const Vector3<Scalar> rates = stages_.proportional(stages_.error(q_WB, target), gains_);
-  return stages_.limit(stages_.feed_forward(rates, q_WB, yaw_rate_), gains_);
+  return stages_.error(q_WB, target);
 }
 
 }  // namespace attest::cascade

@@ -13,6 +13,7 @@
 // construction. The caller owns both structs of a step; one thread at a time for one instance.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <string_view>
@@ -108,10 +109,10 @@ struct AttitudeStepStages {
 
   // Autotune excites the vehicle in these states. Its rates are added after the rate limit.
   ATTEST_INLINE static Vector3<Scalar> autotuned(const Vector3<Scalar>& rates, const Topics& topics,
-                                                 std::uint64_t now_us) {
+                                                 std::uint64_t now_us, const ProfileTraits& law) {
     const auto& autotune = topics.autotune;
     const bool excites =
-        autotune.state == 2 || autotune.state == 4 || autotune.state == 6 || autotune.state == 10;
+        std::ranges::find(law.autotune_states, autotune.state) != law.autotune_states.end();
     const bool recent = now_us - autotune.timestamp < 1000000;
     if (!excites || !recent) return rates;
     return rates + vector_from<Scalar>(autotune.rate_sp);
@@ -143,6 +144,7 @@ struct AttitudeUnitLaw {
   [[no_unique_address]] AttitudeStepStages<Scalar> step;
   [[no_unique_address]] StickStages<Scalar> sticks;
   [[no_unique_address]] AttitudeStages<Scalar> attitude;
+  [[no_unique_address]] ReferenceModelStages<Scalar> model;
 };
 
 template <typename Scalar, typename Law = AttitudeUnitLaw<Scalar>>
@@ -177,7 +179,7 @@ class AttitudeUnit {
   AttitudeUnitGains<Scalar> gains_{};
   [[no_unique_address]] decltype(Law::step) stages_;
   Sticks<Scalar, decltype(Law::sticks)> sticks_;
-  AttitudeLaw<Scalar, decltype(Law::attitude)> attitude_;
+  AttitudeLaw<Scalar, decltype(Law::attitude), decltype(Law::model)> attitude_;
   AttitudeTopics topics_;
   AttitudeSetpoint<Scalar> newest_setpoint_;  // own or external
   bool setpoint_pending_ = false;             // newest_setpoint_ has not been latched yet

@@ -12,7 +12,7 @@ AttitudeUnit<Scalar, Law>::AttitudeUnit(Profile profile, const Law& law)
       parameters_(default_parameters(attitude_parameters(), profile)),
       stages_(law.step),
       sticks_(traits_, law.sticks),
-      attitude_(law.attitude) {}
+      attitude_(traits_.follows_reference_model, law.attitude, law.model) {}
 
 template <typename Scalar, typename Law>
 bool AttitudeUnit<Scalar, Law>::set_parameter(std::string_view name, float value) {
@@ -54,7 +54,7 @@ template <typename Scalar, typename Law>
 void AttitudeUnit<Scalar, Law>::read_parameters() {
   first_step_ = false;
   gains_ = stages_.gains(parameters_);
-  attitude_.set_gains(gains_.attitude);
+  attitude_.set_gains(gains_);
   sticks_.set_gains(gains_.sticks);
   if (!is_finite(hover_estimate_)) thrust_limits_.hover = gains_.sticks.thrust_hover;
 }
@@ -141,7 +141,8 @@ void AttitudeUnit<Scalar, Law>::take_attitude_setpoint() {
 
 template <typename Scalar, typename Law>
 void AttitudeUnit<Scalar, Law>::set_attitude_setpoint(const AttitudeSetpoint<Scalar>& setpoint) {
-  attitude_.set_setpoint(setpoint.q_WD, setpoint.yaw_rate);
+  attitude_.set_setpoint(setpoint.q_WD, setpoint.yaw_rate, setpoint.timestamp_us,
+                         last_setpoint_us_);
   thrust_B_ = setpoint.thrust_B;
   last_setpoint_us_ = setpoint.timestamp_us;
 }
@@ -165,8 +166,9 @@ void AttitudeUnit<Scalar, Law>::publish_rates(const attest_attitude_inputs& in,
     take_attitude_setpoint();
     follow_estimator_reset(in);
   }
-  const Vector3<Scalar> rates = stages_.autotuned(
-      attitude_.update(quaternion_from<Scalar>(in.vehicle_attitude.q)), topics_, in.timestamp);
+  const Vector3<Scalar> rates =
+      stages_.autotuned(attitude_.update(quaternion_from<Scalar>(in.vehicle_attitude.q)), topics_,
+                        in.timestamp, traits_);
   auto& topic = out.vehicle_rates_setpoint;
   topic.roll = float(rates[0]);
   topic.pitch = float(rates[1]);

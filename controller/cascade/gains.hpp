@@ -35,8 +35,16 @@ struct StickGains {
 };
 
 template <typename Scalar>
+struct ReferenceModelGains {
+  Scalar natural_rad_s;           // natural frequency
+  Scalar feed_forward;            // 0..1
+  Scalar feed_forward_max_rad_s;  // 0: no limit
+};
+
+template <typename Scalar>
 struct AttitudeUnitGains {
   AttitudeGains<Scalar> attitude;
+  ReferenceModelGains<Scalar> model;
   StickGains<Scalar> sticks;
   Scalar spoolup_us;
 };
@@ -105,13 +113,17 @@ AttitudeUnitGains<Scalar> attitude_unit_gains(const Parameters& p) {
   sticks.tilt_tau_s = Scalar(p.mc_man_tilt_tau);
   sticks.yaw_rate_max_rad_s = radians(Scalar(p.mpc_man_y_max));
   sticks.yaw_tau_s = Scalar(p.mpc_man_y_tau);
-  sticks.yaw_deadzone = Scalar(p.mpc_hold_dz);
+  sticks.yaw_deadzone = Scalar(p.man_deadzone);
   sticks.yaw_expo = Scalar(p.mpc_yaw_expo);
   sticks.thrust_min = Scalar(p.mpc_manthr_min);
   sticks.thrust_hover = Scalar(p.mpc_thr_hover);
   sticks.thrust_max = Scalar(p.mpc_thr_max);
   sticks.throttle_curve = throttle_curve(p.mpc_thr_curve);
   sticks.yaws_at_lowest_throttle = p.mc_airmode == 2.0f;
+
+  gains.model.natural_rad_s = max(Scalar(p.mc_ref_w_n), Scalar(0.1f));
+  gains.model.feed_forward = clamp(Scalar(p.mc_ref_ff), Scalar(0), Scalar(1));
+  gains.model.feed_forward_max_rad_s = max(radians(Scalar(p.mc_ref_ff_max)), Scalar(0));
   gains.spoolup_us = Scalar(p.com_spoolup_time) * Scalar(1e6f);
   return gains;
 }

@@ -1,7 +1,7 @@
 // The parameters of the cascade: a table for each unit with names, defaults, bounds, units and
 // meanings, and the raw values.
 //
-// Names, defaults and bounds are those of PX4 v1.14.4, v1.15.4 and v1.16.0. Angles and angular
+// Names, defaults and bounds are those of PX4 v1.14.4 to v1.18. Angles and angular
 // rates of parameters are in degrees; everything computed from them is in radians (gains.hpp). The
 // law does not enforce the bounds, which are those of the ground station.
 //
@@ -20,9 +20,12 @@ struct Parameters {
   float mc_roll_p, mc_pitch_p, mc_yaw_p, mc_yaw_weight;
   float mc_rollrate_max, mc_pitchrate_max, mc_yawrate_max;
   float mpc_man_tilt_max, mc_man_tilt_tau;
-  float mpc_man_y_max, mpc_man_y_tau, mpc_hold_dz, mpc_yaw_expo;
+  float mpc_man_y_max, mpc_man_y_tau;
+  float man_deadzone;         // MPC_HOLD_DZ in v1.16.0
+  float mpc_yaw_expo = 0.6f;  // a parameter of v1.16.0, and a constant since
   float mpc_manthr_min, mpc_thr_hover, mpc_thr_max, mpc_thr_curve;
   float mc_airmode, com_spoolup_time;
+  float mc_ref_w_n, mc_ref_ff, mc_ref_ff_max;
   // rate unit
   float mc_rollrate_p, mc_rollrate_i, mc_rollrate_d, mc_rollrate_ff, mc_rollrate_k, mc_rr_int_lim;
   float mc_pitchrate_p, mc_pitchrate_i, mc_pitchrate_d, mc_pitchrate_ff, mc_pitchrate_k,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <optional>
 #include <string_view>
@@ -10,15 +11,21 @@
 
 namespace attest::cascade {
 
-enum class Profile { px4_v1_16_0, px4_v1_15_4, px4_v1_14_4 };
+enum class Profile { px4_v1_18, px4_v1_17, px4_v1_16_0, px4_v1_15_4, px4_v1_14_4 };
 
 // Newest first, in the order of the enumerators.
-inline constexpr std::array<Profile, 3> every_profile{Profile::px4_v1_16_0, Profile::px4_v1_15_4,
+inline constexpr std::array<Profile, 5> every_profile{Profile::px4_v1_18, Profile::px4_v1_17,
+                                                      Profile::px4_v1_16_0, Profile::px4_v1_15_4,
                                                       Profile::px4_v1_14_4};
+
+// The states of autotune in which the rates of its signal are added: roll, pitch, yaw and test.
+using AutotuneStates = std::array<std::uint8_t, 4>;
 
 // All differences between the profiles, except their parameters (parameters.hpp).
 struct ProfileTraits {
   std::string_view name;
+  std::string_view as_of;  // what was read, if it was not the final release; else empty
+  AutotuneStates autotune_states;
   bool filters_yaw_torque;           // a low-pass after the rate law
   bool follows_hover_estimate;       // the throttle curve can use the estimated hover thrust; else
                                      // it uses MPC_THR_HOVER
@@ -32,11 +39,17 @@ struct ProfileTraits {
                                      // if it is newer than the setpoint in use, like a topic's
   bool squares_heading;              // R00 in heading() is ww + xx - yy - zz; else 1 - 2 (yy + zz)
   bool weighs_low_pass;              // LowPass: (1 - a) s + a x; else s + a (x - s)
+  bool reads_heading_good;           // a heading that is not good for control releases the yaw lock
+  bool keeps_lost_correction;        // the yaw correction keeps its value while the unaided heading
+                                     // is lost, and starts anew when it is back; else it is 0
+  bool follows_reference_model;      // the law tracks a model that follows the attitude setpoint
 };
 
 // A new profile needs its traits here: the compiler warns if it has none.
 constexpr ProfileTraits traits_of(Profile profile) {
   constexpr ProfileTraits v1_15_4{.name = "px4-v1.15.4",
+                                  .as_of = "",
+                                  .autotune_states = {2, 4, 6, 10},
                                   .filters_yaw_torque = false,
                                   .follows_hover_estimate = false,
                                   .locks_yaw = false,
@@ -44,9 +57,26 @@ constexpr ProfileTraits traits_of(Profile profile) {
                                   .latches_in_every_step = false,
                                   .flies_own_setpoint_directly = false,
                                   .squares_heading = false,
-                                  .weighs_low_pass = false};
+                                  .weighs_low_pass = false,
+                                  .reads_heading_good = true,
+                                  .keeps_lost_correction = false,
+                                  .follows_reference_model = false};
   ProfileTraits traits = v1_15_4;
   switch (profile) {
+    case Profile::px4_v1_18:
+      traits = traits_of(Profile::px4_v1_17);
+      traits.name = "px4-v1.18";
+      traits.as_of = "branch release-1.18 (2026-08)";
+      traits.reads_heading_good = false;
+      traits.keeps_lost_correction = true;
+      traits.follows_reference_model = true;
+      return traits;
+    case Profile::px4_v1_17:
+      traits = traits_of(Profile::px4_v1_16_0);
+      traits.name = "px4-v1.17";
+      traits.as_of = "v1.17.0-beta1 (2026-01)";
+      traits.autotune_states = {3, 6, 9, 13};
+      return traits;
     case Profile::px4_v1_16_0:
       traits.name = "px4-v1.16.0";
       traits.filters_yaw_torque = true;
@@ -70,6 +100,10 @@ constexpr ProfileTraits traits_of(Profile profile) {
 using ProfileRange = attest::ProfileRange<Profile>;
 inline constexpr Profile newest = every_profile.front(), oldest = every_profile.back();
 inline constexpr ProfileRange all_profiles{newest, oldest};
+inline constexpr ProfileRange from_v1_18{newest, Profile::px4_v1_18};
+inline constexpr ProfileRange from_v1_17{newest, Profile::px4_v1_17};
+inline constexpr ProfileRange until_v1_16_0{Profile::px4_v1_16_0, oldest};
+inline constexpr ProfileRange only_v1_16_0{Profile::px4_v1_16_0, Profile::px4_v1_16_0};
 inline constexpr ProfileRange from_v1_16_0{newest, Profile::px4_v1_16_0};
 inline constexpr ProfileRange from_v1_15_4{newest, Profile::px4_v1_15_4};
 inline constexpr ProfileRange until_v1_15_4{Profile::px4_v1_15_4, oldest};

@@ -132,12 +132,11 @@ ATTEST_INLINE Quaternion<Scalar> shortest_rotation(const Vector3<Scalar>& a,
   return unit<Scalar>({w, axis[0], axis[1], axis[2]});
 }
 
-// A rotation by |{x, y}| [rad] about the horizontal axis {x, y, 0}.
+// A rotation by |v| [rad] about the direction of v.
 template <typename Scalar>
-ATTEST_INLINE Quaternion<Scalar> rotation_about(Scalar x, Scalar y) {
+ATTEST_INLINE Quaternion<Scalar> rotation_about(const Vector3<Scalar>& v) {
   using elementary::cos;
   using elementary::sin;
-  const Vector3<Scalar> v(x, y, Scalar(0));
   const Scalar angle = length(v);
   if (angle < Scalar(1e-10f)) return identity<Scalar>();
   const Vector3<Scalar> axis = v * (Scalar(1) / angle);

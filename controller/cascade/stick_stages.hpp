@@ -28,6 +28,7 @@ struct YawCorrection {
   Scalar reference = Scalar(0);
   Scalar value = Scalar(0);
   bool converging = false;
+  bool lost = false;  // v1.18: the unaided heading was not available in the last step of the sticks
 };
 
 template <typename Scalar>
@@ -47,16 +48,24 @@ struct StickStages {
     return throttle < Scalar(-0.9f) && !gains.yaws_at_lowest_throttle;
   }
 
-  // Updates `state`. Returns true if the estimator has just converged: the locked yaw must then be
-  // released.
+  // Updates `state`. Returns true if the estimator has just converged, or if the unaided heading is
+  // back: the locked yaw must then be released.
   static bool correct_yaw(YawCorrection<Scalar>& state, Scalar heading, Scalar unaided, Scalar dt_s,
                           const ProfileTraits& law) {
     if (!is_finite(unaided)) {
-      state.value = Scalar(0);
+      if (law.keeps_lost_correction) {
+        state.lost = true;
+      } else {
+        state.value = Scalar(0);
+      }
       return false;
     }
-    constexpr float converged_rad = 0.0174532924f, tau_s = 1.0f;
     const Scalar error = wrap(heading - unaided);
+    if (state.lost) {
+      state = {.error = {error, state.error.weight}, .reference = error};
+      return true;
+    }
+    constexpr float converged_rad = 0.0174532924f, tau_s = 1.0f;
     const Scalar change = wrap(error - state.error.state);
     state.error.update(Scalar(tau_s), dt_s, error, law);
     const bool was_converging = state.converging;
@@ -67,7 +76,7 @@ struct StickStages {
     return was_converging && !state.converging;
   }
 
-  // v1.16.0: the commanded yaw rate, with a deadzone and an expo, before the low-pass.
+  // From v1.16.0: the commanded yaw rate, with a deadzone and an expo, before the low-pass.
   ATTEST_INLINE static Scalar shaped_yaw_rate(Scalar stick, const Gains& gains) {
     return expo(deadzone(stick, gains.yaw_deadzone), gains.yaw_expo) * gains.yaw_rate_max_rad_s;
   }
@@ -76,8 +85,8 @@ struct StickStages {
     return stick * gains.yaw_rate_max_rad_s;
   }
 
-  // v1.16.0: while a yaw rate is commanded, no yaw is held. The first step without a yaw rate takes
-  // the heading, which is then held. The held yaw moves with the correction.
+  // From v1.16.0: while a yaw rate is commanded, no yaw is held. The first step without a yaw rate
+  // takes the heading, which is then held. The held yaw moves with the correction.
   ATTEST_INLINE static Scalar locked_yaw(Scalar yaw_sp, Scalar rate, Scalar heading,
                                          Scalar old_correction, Scalar correction) {
     using std::abs;
@@ -102,9 +111,7 @@ struct StickStages {
     return angle > gains.tilt_max_rad ? Vector(v * (gains.tilt_max_rad / angle)) : v;
   }
 
-  ATTEST_INLINE static Q tilt(const Vector& rotation) {
-    return rotation_about(rotation[0], rotation[1]);
-  }
+  ATTEST_INLINE static Q tilt(const Vector& rotation) { return rotation_about(rotation); }
 
   // A VTOL corrects yaw slowly, so the sticks command a tilt relative to its present yaw. Returns
   // that tilt relative to the desired yaw.

@@ -1,8 +1,8 @@
 // The stabilized mode: an attitude setpoint from the sticks.
 //
 // Roll and pitch stick command a tilt, the yaw stick a yaw rate about the world's z axis, the
-// throttle stick a thrust. Without a yaw rate v1.16.0 holds the heading; older profiles integrate
-// the yaw rate.
+// throttle stick a thrust. Without a yaw rate the heading is held from v1.16.0 on; older profiles
+// integrate the yaw rate.
 //
 // Frames: W world NED, B body FRD, D desired body. No clock, no allocation; one thread at a time.
 #pragma once
@@ -91,7 +91,7 @@ AttitudeSetpoint<Scalar> Sticks<Scalar, Stages>::update(const StickInput<Scalar>
 template <typename Scalar, typename Stages>
 Scalar Sticks<Scalar, Stages>::lock_yaw(const StickInput<Scalar>& in, Scalar heading) {
   const bool lowest = stages_.is_lowest_throttle(Scalar(in.sticks.throttle), gains_);
-  if (lowest || !in.heading_good) yaw_sp_ = stages_.no_yaw();
+  if (lowest || (traits_.reads_heading_good && !in.heading_good)) yaw_sp_ = stages_.no_yaw();
   const Scalar old_correction = correction_.value;
   if (stages_.correct_yaw(correction_, heading, in.unaided_heading, in.dt_s, traits_)) {
     yaw_sp_ = stages_.no_yaw();

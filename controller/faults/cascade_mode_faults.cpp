@@ -29,10 +29,19 @@ void change_follows_sticks(FaultyLaw& law, Change change) {
 template <typename Change>
 void change_autotune(FaultyLaw& law, Change change) {
   law.attitude_unit.step.autotuned = [change](const Vector& rates, Topics topics,
-                                              std::uint64_t now_us) mutable {
+                                              std::uint64_t now_us,
+                                              const CascadeTraits& traits) mutable {
     change(topics, now_us);
-    return StepLaw::autotuned(rates, topics, now_us);
+    return StepLaw::autotuned(rates, topics, now_us, traits);
   };
+}
+
+// Another state, which is in the list already, takes its place.
+template <std::size_t state>
+void leave_out_autotune_state(FaultyLaw& law) {
+  change_traits(law.attitude_unit, [](CascadeTraits& traits) {
+    traits.autotune_states[state] = traits.autotune_states.front();
+  });
 }
 
 // Autotune acts only in the step in which its sample arrives.
@@ -208,31 +217,27 @@ const Fault mode_list[] = {
      "a missing sum",
      [](FaultyLaw& law) {
        law.attitude_unit.step.autotuned = [](const Vector& rates, const Topics& topics,
-                                             std::uint64_t now_us) {
+                                             std::uint64_t now_us, const CascadeTraits& traits) {
          const Vector zero = Vector::Zero();
-         const Vector added = StepLaw::autotuned(zero, topics, now_us);
+         const Vector added = StepLaw::autotuned(zero, topics, now_us, traits);
          return added == zero ? rates : added;
        };
      }},
     {"cascade-autotune-in-any-state", "modes", Stage::autotune,
-     "adds the rates of autotune in every state", "autotune in state 3", "a missing condition",
+     "adds the rates of autotune in every state", "autotune in state 5", "a missing condition",
      [](FaultyLaw& law) {
-       change_autotune(law, [](Topics& topics, std::uint64_t&) { topics.autotune.state = 2; });
+       law.attitude_unit.step.autotuned = [](const Vector& rates, Topics topics,
+                                             std::uint64_t now_us, const CascadeTraits& traits) {
+         topics.autotune.state = traits.autotune_states.front();
+         return StepLaw::autotuned(rates, topics, now_us, traits);
+       };
      }},
     {"cascade-autotune-not-in-test", "modes", Stage::autotune,
-     "does not add the rates of autotune in state 10", "autotune in state 10", "a missing case",
-     [](FaultyLaw& law) {
-       change_autotune(law, [](Topics& topics, std::uint64_t&) {
-         if (topics.autotune.state == 10) topics.autotune.state = 0;
-       });
-     }},
+     "does not add the rates of autotune in the test of its gains", "autotune in its test",
+     "a missing case", leave_out_autotune_state<3>},
     {"cascade-autotune-not-of-yaw", "modes", Stage::autotune,
-     "does not add the rates of autotune in state 6", "autotune in state 6", "a missing case",
-     [](FaultyLaw& law) {
-       change_autotune(law, [](Topics& topics, std::uint64_t&) {
-         if (topics.autotune.state == 6) topics.autotune.state = 0;
-       });
-     }},
+     "does not add the rates of autotune while it excites yaw", "autotune of yaw", "a missing case",
+     leave_out_autotune_state<2>},
     {"cascade-autotune-never-old", "modes", Stage::autotune,
      "adds the rates of an autotune sample of any age", "a sample of 1.5 s ago",
      "a missing timeout",

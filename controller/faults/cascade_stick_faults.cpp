@@ -128,7 +128,7 @@ const Fault stick_list[] = {
      "does not halve the tilt angle for the quaternion", "the roll stick", "a missing factor",
      [](FaultyLaw& law) {
        law.attitude_unit.sticks.tilt = [](const Vector& v) {
-         return cascade::rotation_about(2 * v[0], 2 * v[1]);
+         return cascade::rotation_about<Scalar>(2 * v);
        };
      }},
     {"cascade-tilt-filter-missing", "sticks", Stage::sticks, "does not filter the tilt",

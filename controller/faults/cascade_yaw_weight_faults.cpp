@@ -236,10 +236,11 @@ const Fault yaw_weight_list[] = {
        change_gains(law.attitude_unit, [max](AttitudeUnitGains& g, const CascadeParameters&) {
          *max = g.attitude.rate_max_rad_s;
        });
-       law.attitude_unit.step.autotuned =
-           [max](const Vector& rates, const cascade::AttitudeTopics& topics, std::uint64_t now_us) {
-             return clamped(AttitudeStepStages::Law::autotuned(rates, topics, now_us), *max);
-           };
+       law.attitude_unit.step.autotuned = [max](const Vector& rates,
+                                                const cascade::AttitudeTopics& topics,
+                                                std::uint64_t now_us, const CascadeTraits& traits) {
+         return clamped(AttitudeStepStages::Law::autotuned(rates, topics, now_us, traits), *max);
+       };
      }},
 };
 

@@ -40,6 +40,24 @@ struct QuaternionStages {
   std::function<Vector(const Vector&, const LawGains&)> limit = Law::limit;
 };
 
+struct ModelStages {
+  using Law = cascade::ReferenceModelStages<Scalar>;
+  using LawGains = cascade::ReferenceModelGains<Scalar>;
+  using Decay = cascade::ModelDecay<Scalar>;
+  std::function<Scalar(std::uint64_t)> elapsed = Law::elapsed;
+  std::function<Vector(const Quat&)> world_z = Law::world_z;
+  std::function<Vector(const Vector&, Scalar)> command = Law::command;
+  std::function<Vector(const Quat&, const Quat&)> error = Law::error;
+  std::function<Decay(Scalar, const LawGains&)> decay = Law::decay;
+  std::function<Vector(const Vector&, const Vector&, const Vector&, Scalar, const Decay&)> turn =
+      Law::turn;
+  std::function<Vector(const Vector&, const Vector&, const Decay&)> rate = Law::rate;
+  std::function<Vector(const Vector&, const Vector&, Scalar)> without_yaw = Law::without_yaw;
+  std::function<Quat(const Quat&, const Vector&)> turned = Law::turned;
+  std::function<Vector(const Quat&, const Quat&, const Vector&)> in_body = Law::in_body;
+  std::function<Vector(const Vector&, const LawGains&)> share = Law::share;
+};
+
 struct StickStages {
   using Law = cascade::StickStages<Scalar>;
   std::function<Scalar()> no_yaw = Law::no_yaw;
@@ -78,7 +96,8 @@ struct AttitudeStepStages {
   std::function<bool()> supersedes_pending = Law::supersedes_pending;
   std::function<bool(std::uint64_t, std::uint64_t)> is_newer = Law::is_newer;
   std::function<bool(std::uint64_t, std::uint64_t)> precedes_reset = Law::precedes_reset;
-  std::function<Vector(const Vector&, const Topics&, std::uint64_t)> autotuned = Law::autotuned;
+  std::function<Vector(const Vector&, const Topics&, std::uint64_t, const CascadeTraits&)>
+      autotuned = Law::autotuned;
   std::function<Scalar(Scalar, Scalar, bool, const StickGains&)> thrust_min = Law::thrust_min;
   std::function<Scalar(Scalar, Scalar, bool)> thrust_max = Law::thrust_max;
   std::function<Scalar(Scalar, Scalar, Scalar)> hover_thrust = Law::hover_thrust;
@@ -138,6 +157,7 @@ struct AttitudeUnitLaw : Around<attest_attitude_inputs, attest_attitude_outputs>
   AttitudeStepStages step;
   StickStages sticks;
   QuaternionStages attitude;
+  ModelStages model;
 };
 
 // Replaces cascade::RateUnitLaw.

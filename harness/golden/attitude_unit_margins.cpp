@@ -21,6 +21,17 @@ double from_opposite(const mc_att_control::Vector3<double>& axis) {
 // The distance [rad] of an angle from the nearer of pi and -pi.
 double from_half_turn(double angle) { return std::abs(std::numbers::pi - std::abs(angle)); }
 
+// Notes where a rotation is half a turn: its sign, and so the shorter way, is arbitrary there.
+void note_half_turn(const Q& rotation, MarginNotes& notes) {
+  notes.note(Decision::shorter_rotation, std::abs(rotation[0]) / rotation.norm());
+}
+
+// Notes whether a yaw rate is taken as 0. A rate of exactly 0 is the same in every port.
+void note_yaw_rate(double rate, MarginNotes& notes) {
+  if (rate == 0) return;
+  notes.note(Decision::yaw_lock, std::abs(std::abs(rate) / double(cascade::epsilon) - 1));
+}
+
 struct NotingAttitudeLaw : cascade::AttitudeStages<double> {
   using Law = cascade::AttitudeStages<double>;
   MarginNotes* notes;
@@ -42,9 +53,22 @@ struct NotingAttitudeLaw : cascade::AttitudeStages<double> {
     return Law::weighted_yaw(w, z, weight);
   }
   Q error(const Q& q_WB, const Q& target) const {
-    const Q q = cascade::product(cascade::inverse(q_WB), target);
-    notes->note(Decision::shorter_rotation, std::abs(q[0]) / q.norm());
+    note_half_turn(cascade::product(cascade::inverse(q_WB), target), *notes);
     return Law::error(q_WB, target);
+  }
+};
+
+struct NotingModel : cascade::ReferenceModelStages<double> {
+  using Law = cascade::ReferenceModelStages<double>;
+  MarginNotes* notes;
+
+  Vector error(const Q& q_WR, const Q& q_WD) const {
+    note_half_turn(cascade::product(cascade::inverse(q_WR), q_WD), *notes);
+    return Law::error(q_WR, q_WD);
+  }
+  Vector without_yaw(const Vector& rate, const Vector& z_R, double yaw_rate) const {
+    note_yaw_rate(yaw_rate, *notes);
+    return Law::without_yaw(rate, z_R, yaw_rate);
   }
 };
 
@@ -70,7 +94,7 @@ struct NotingSticks : cascade::StickStages<double> {
     const double error = cascade::wrap(heading - unaided);
     const double change = cascade::wrap(error - state.error.state);
     constexpr double converged_rad = 0.0174532924f;
-    if (std::isfinite(unaided)) {
+    if (std::isfinite(unaided) && !state.lost) {
       notes->note(Decision::heading_wrap, from_half_turn(error));
       notes->note(Decision::convergence, std::abs(std::abs(change) - converged_rad));
     }
@@ -78,10 +102,7 @@ struct NotingSticks : cascade::StickStages<double> {
   }
   double locked_yaw(double yaw_sp, double rate, double heading, double old_correction,
                     double correction) const {
-    // A rate of exactly 0 is the same in every port.
-    if (rate != 0) {
-      notes->note(Decision::yaw_lock, std::abs(std::abs(rate) / double(cascade::epsilon) - 1));
-    }
+    note_yaw_rate(rate, *notes);
     return Law::locked_yaw(yaw_sp, rate, heading, old_correction, correction);
   }
   double turned(double angle, double turn) const {
@@ -131,9 +152,10 @@ struct NotingAttitudeUnit {
   NotingAttitudeStep step;
   NotingSticks sticks;
   NotingAttitudeLaw attitude;
+  NotingModel model;
 
   explicit NotingAttitudeUnit(MarginNotes* notes)
-      : step{{}, notes}, sticks{{}, notes}, attitude{{}, notes} {}
+      : step{{}, notes}, sticks{{}, notes}, attitude{{}, notes}, model{{}, notes} {}
 };
 
 using AttitudeUnitMeter =

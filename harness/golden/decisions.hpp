@@ -25,7 +25,9 @@ enum class Decision {
   // condition farthest from its limit.
   integrator_gate,
   rattitude,          // a stick against MC_RATT_TH
-  shorter_rotation,   // * q_e.w >= 0; of the controller only beyond 90 deg of tilt
+  // * q_e.w >= 0: of the controller only beyond 90 deg of tilt; of v1.18 also from the reference
+  // model to the setpoint
+  shorter_rotation,
   yaw_wrap,           // * the yaw error at +-pi
   tilt_axis,          // * the tilt error at 180 deg, where its axis is arbitrary
   battery_scale,      // * scale > 0
@@ -43,7 +45,7 @@ enum class Decision {
   heading_pole,     // pitch against 0.001 rad from +-90 deg
   heading_wrap,     // at +-pi: the yaw of the sticks' setpoint, the error of the heading
   convergence,      // the change of the heading's error against 1 deg
-  yaw_lock,         // |yaw rate| > FLT_EPSILON, as a ratio
+  yaw_lock,         // |yaw rate| > FLT_EPSILON, as a ratio; also in the reference model
   // Of the rate unit.
   saturation_flag,  // |unallocated torque| > FLT_EPSILON, as a ratio
   yaw_cutoff,       // MC_YAW_TQ_CUTOFF > FLT_EPSILON, as a ratio

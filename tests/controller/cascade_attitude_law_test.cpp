@@ -19,6 +19,11 @@ Quaternion<Scalar> cascade_quaternion(const test::Quaterniond& q) {
 
 Quaternion<float> any_attitude() { return cascade_quaternion<float>(*test::any_attitude()); }
 
+template <typename Scalar>
+Quaternion<Scalar> horizontal_turn(Scalar x, Scalar y) {
+  return rotation_about(Vector3<Scalar>(x, y, Scalar(0)));
+}
+
 Parameters default_attitude_parameters() {
   return default_parameters(attitude_parameters(), Profile::px4_v1_16_0);
 }
@@ -29,8 +34,8 @@ Vector3<Scalar> rates_of(const Quaternion<Scalar>& q_WB, const Quaternion<Scalar
                          Scalar yaw_rate = Scalar(0),
                          const Parameters& parameters = default_attitude_parameters()) {
   AttitudeLaw<Scalar> law;
-  law.set_gains(attitude_unit_gains<Scalar>(parameters).attitude);
-  law.set_setpoint(q_WD, yaw_rate);
+  law.set_gains(attitude_unit_gains<Scalar>(parameters));
+  law.set_setpoint(q_WD, yaw_rate, 0, 0);
   return law.update(q_WB);
 }
 
@@ -97,7 +102,7 @@ TEST(CascadeAttitudeLaw, LargeYawErrorsAreWeighted) {
 }
 
 TEST(CascadeAttitudeLaw, TiltErrorsAreCorrectedInFull) {
-  const Vector3<double> rates = rates_of<double>(identity<double>(), rotation_about(0.3, -0.4));
+  const Vector3<double> rates = rates_of<double>(identity<double>(), horizontal_turn(0.3, -0.4));
   EXPECT_NEAR(rates[0], 6.5 * 2 * 0.6 * std::sin(0.25), 1e-6);
   EXPECT_NEAR(rates[1], 6.5 * 2 * -0.8 * std::sin(0.25), 1e-6);
   EXPECT_NEAR(rates[2], 0.0, 1e-9);
@@ -117,14 +122,14 @@ TEST(CascadeAttitudeLaw, OppositeThrustTakesTheWholeRotation) {
 }
 
 TEST(CascadeAttitudeLaw, YawRateIsAboutTheWorldsZAxis) {
-  const Quaternion<double> rolled = rotation_about(0.5, 0.0);
+  const Quaternion<double> rolled = horizontal_turn(0.5, 0.0);
   const Vector3<double> rates = rates_of<double>(rolled, rolled, 0.7);
   EXPECT_NEAR(rates[1], 0.7 * std::sin(0.5), 1e-6);
   EXPECT_NEAR(rates[2], 0.7 * std::cos(0.5), 1e-6);
 }
 
 TEST(CascadeAttitudeLaw, AYawRateThatIsNotFiniteIsNoCommand) {
-  const Quaternion<float> q = rotation_about(0.5f, 0.0f);
+  const Quaternion<float> q = horizontal_turn(0.5f, 0.0f);
   const Vector3<float> without = rates_of<float>(q, identity<float>(), 0.0f);
   EXPECT_EQ(rates_of<float>(q, identity<float>(), NAN), without);
   EXPECT_EQ(rates_of<float>(q, identity<float>(), INFINITY), without);
@@ -133,11 +138,11 @@ TEST(CascadeAttitudeLaw, AYawRateThatIsNotFiniteIsNoCommand) {
 // An estimator reset turns the attitude; the adapted setpoint keeps the rates.
 RC_GTEST_PROP(CascadeAttitudeLaw, AdaptedSetpointKeepsTheRates, ()) {
   const Quaternion<double> q = cascade_quaternion<double>(*test::any_attitude());
-  const Quaternion<double> q_d = product(q, rotation_about(*uniform(-1, 1), *uniform(-1, 1)));
+  const Quaternion<double> q_d = product(q, horizontal_turn(*uniform(-1, 1), *uniform(-1, 1)));
   const Quaternion<double> delta = cascade_quaternion<double>(*test::any_attitude());
   AttitudeLaw<double> law;
-  law.set_gains(attitude_unit_gains<double>(default_attitude_parameters()).attitude);
-  law.set_setpoint(q_d, 0.0);
+  law.set_gains(attitude_unit_gains<double>(default_attitude_parameters()));
+  law.set_setpoint(q_d, 0.0, 0, 0);
   const Vector3<double> before = law.update(q);
   law.adapt_setpoint(delta);
   RC_ASSERT((law.update(product(delta, q)) - before).norm() < 1e-6);
@@ -170,7 +175,8 @@ RC_GTEST_PROP(CascadeRotation, HeadingIsTheYawThatWasTurned, (bool squares)) {
   ProfileTraits law = traits_of(Profile::px4_v1_16_0);
   law.squares_heading = squares;
   const double yaw = *uniform(-3.1, 3.1);
-  const Quaternion<double> q = product(yaw_rotation(yaw), rotation_about(0.0, *uniform(-1.5, 1.5)));
+  const Quaternion<double> q =
+      product(yaw_rotation(yaw), horizontal_turn(0.0, *uniform(-1.5, 1.5)));
   RC_ASSERT(std::abs(heading(q, law) - yaw) < 1e-6);
 }
 
@@ -183,7 +189,7 @@ TEST(CascadeRotation, HeadingOfALongQuaternionDiffersInV1_14_4) {
 
 TEST(CascadeRotation, HeadingNearThePoles) {
   for (const double pitch : {M_PI / 2, -M_PI / 2}) {
-    const Quaternion<double> q = product(yaw_rotation(0.7), rotation_about(0.0, pitch));
+    const Quaternion<double> q = product(yaw_rotation(0.7), horizontal_turn(0.0, pitch));
     EXPECT_NEAR(heading(q, traits_of(Profile::px4_v1_16_0)), 0.7, 1e-6) << pitch;
   }
 }

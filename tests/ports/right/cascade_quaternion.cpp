@@ -80,18 +80,14 @@ struct SwingTwist : AttitudeStages<float> {
 
 // The law's composition of stages passes quaternions in world axes. This port has none.
 template <>
-Vector3<float> attest::cascade::AttitudeLaw<float, SwingTwist>::update(const Q& q_WB) const {
+Quaternion<float> attest::cascade::AttitudeLaw<float, SwingTwist>::error(const Q& q_WB) const {
   const float norm = std::sqrt(squared_norm(q_WB));
   const Rotation from_body = rotation(q_WB).conjugate() * rotation(q_WD_);
   const Q whole{from_body.w(), from_body.x(), from_body.y(), from_body.z()};
   const SwingTwist::Parts parts = SwingTwist::parts(whole / norm, q_WB);
-  Q error = canonical(Q(whole / (norm * norm)));
-  if (!SwingTwist::is_opposite(parts.tilt_B, q_WB)) {
-    const auto yaw = SwingTwist::weighted(parts.torsion, norm, gains_.yaw_weight);
-    error = SwingTwist::error(parts.tilt_B, yaw);
-  }
-  const Vector rates = stages_.proportional(error, gains_);
-  return stages_.limit(stages_.feed_forward(rates, q_WB, yaw_rate_), gains_);
+  if (SwingTwist::is_opposite(parts.tilt_B, q_WB)) return canonical(Q(whole / (norm * norm)));
+  const auto yaw = SwingTwist::weighted(parts.torsion, norm, gains_.yaw_weight);
+  return SwingTwist::error(parts.tilt_B, yaw);
 }
 
 namespace {
