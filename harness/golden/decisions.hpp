@@ -24,7 +24,7 @@ enum class Decision {
   // distance is that of the condition nearest to its limit. Otherwise it is that of the failed
   // condition farthest from its limit.
   integrator_gate,
-  rattitude,          // a stick against MC_RATT_TH
+  rattitude,  // a stick against MC_RATT_TH
   // * q_e.w >= 0: of the controller only beyond 90 deg of tilt; of v1.18 also from the reference
   // model to the setpoint
   shorter_rotation,
