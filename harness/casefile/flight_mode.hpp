@@ -23,7 +23,7 @@ struct FlightMode {
 const std::array<std::string_view, 6>& flag_names(Module module);
 
 // The modes, with the flags that the firmware sets for a multicopter: for the controller those of
-// PX4 v1.5.5's commander, for the units of the cascade those of v1.14 to v1.16.
+// PX4 v1.5.5's commander, for the units of the cascade those of v1.14 to v1.18.
 std::span<const FlightMode> flight_modes(Module module);
 
 // The entry of that name, or nullptr.

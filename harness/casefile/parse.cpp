@@ -20,7 +20,6 @@
 #include "harness/casefile/parse_unit.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/printable.hpp"
-#include "harness/core/suggestion.hpp"
 #include "harness/core/toml.hpp"
 #include "harness/port/profiles.hpp"
 
@@ -142,9 +141,10 @@ void check_parameter_name(const TomlTable& table, const std::string& name, const
       known.insert(known.end(), others.begin(), others.end());
     }
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    table.error(name, fmt::format("unknown parameter `{}`{}; `attest list --parameters --profile "
-                                  "{}` shows those of {}",
-                                  name, suggestion(name, known), profile, profile));
+    table.error(name,
+                fmt::format("unknown parameter `{}`{}; `attest list --parameters --profile "
+                            "{}` shows those of {}",
+                            name, hint_for_parameter(name, profile, known), profile, profile));
     return;
   }
 }

@@ -23,7 +23,8 @@ namespace {
 
 constexpr const char* description =
     "Tests whether a port of PX4's multicopter attitude and rate control behaves as the original\n"
-    "does. The releases are v1.3.4, v1.5.5, v1.14.4, v1.15.4 and v1.16.0. The report names the\n"
+    "does. The releases are v1.3.4, v1.5.5, v1.14.4 to v1.16.0, v1.17 and v1.18. The report names "
+    "the\n"
     "first deviation: its tick, its signal and the stage of the law.\n";
 
 constexpr const char* footer =
@@ -33,7 +34,7 @@ constexpr const char* footer =
     "  attest run --port lib:./libmine.so --level exact --filter 'attitude/*@250hz'\n"
     "  attest replay TRACE.csv --port lib:./libmine.so\n"
     "  attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv\n"
-    "  attest sim hover --rate 250:1000 --out f.csv   fly both units of v1.14 to v1.16\n"
+    "  attest sim hover --rate 250:1000 --out f.csv   fly both units of v1.14 to v1.18\n"
     "  attest stress --port lib:./libmine.so          fly in real time, at 250 Hz to 8 kHz\n"
     "\n"
     "Exit codes: 0 no failure, 1 a failure, 2 wrong usage or environment, or no result,\n"

@@ -2,8 +2,11 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
+#include <string_view>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -62,17 +65,30 @@ std::vector<Listed> listed_parameters(Module module,
   return rows;
 }
 
+// Says which of the profiles were read before their release.
+void list_as_of(const std::set<std::string_view>& names) {
+  const char* separator = "\n";
+  for (const ProfileInfo& profile : known_profiles()) {
+    if (profile.as_of.empty() || !names.contains(profile.name)) continue;
+    fmt::print("{}{} is the law as of {}; the final release may differ\n",
+               std::exchange(separator, ""), profile.name, profile.as_of);
+  }
+}
+
+void list_as_of(const std::vector<SelectedCase>& cases) {
+  std::set<std::string_view> names;
+  for (const SelectedCase& selected : cases) names.insert(selected.the_case.profile);
+  list_as_of(names);
+}
+
 void list_parameters(const std::vector<const ProfileInfo*>& profiles) {
   constexpr const char* row = "{:<17}{:>9}{:>8}{:>8}  {:<8} {:<22} {}\n";
-  bool is_first = true;
+  const char* separator = "";
   for (const ModuleInfo& info : modules()) {
     const std::vector<Listed> rows = listed_parameters(info.module, profiles);
     if (rows.empty()) continue;
-    if (is_first) {
-      fmt::print(row, "parameter", "default", "min", "max", "unit", "profiles", "what it does");
-    }
-    if (!is_first) fmt::print("\nof {}:\n", info.name);
-    is_first = false;
+    fmt::print("{}of {}:\n", std::exchange(separator, "\n"), info.name);
+    fmt::print(row, "parameter", "default", "min", "max", "unit", "profiles", "what it does");
     for (const auto& [parameter, names] : rows) {
       const auto bound = [](float value) {
         return std::isinf(value) ? std::string() : fmt::format("{}", value);
@@ -81,6 +97,9 @@ void list_parameters(const std::vector<const ProfileInfo*>& profiles) {
                  bound(parameter.max), parameter.unit, names, parameter.description);
     }
   }
+  std::set<std::string_view> names;
+  for (const ProfileInfo* profile : profiles) names.insert(profile->name);
+  list_as_of(names);
 }
 
 std::string_view type_name(ChannelType type) {
@@ -191,6 +210,7 @@ int list_command(const ListOptions& options, const Globals& globals) {
   const auto cases = options.select.cases_in(suite->case_folders());
   if (!cases) return report_error(cases.error());
   options.groups ? list_groups(*cases) : list_cases(*cases);
+  list_as_of(*cases);
   return exit_ok;
 }
 

@@ -60,7 +60,7 @@ bool is_output(const std::string& name, bool is_of_controller) {
   });
 }
 
-// The outputs of the controller or of the units of v1.14 to v1.16; all signals if there is no
+// The outputs of the controller or of the units of v1.14 to v1.18; all signals if there is no
 // output.
 std::vector<std::string> names_by_default(const std::vector<std::string>& all) {
   const bool is_of_controller = std::any_of(all.begin(), all.end(), [](const std::string& name) {

@@ -27,13 +27,13 @@ std::vector<std::string_view> profiles_for(const FlightLog& log) {
   return names;
 }
 
-// The profile of the log's minor release: px4-v1.14.4 for a log of v1.14.3. Empty: there is no such
-// profile.
+// The profile of the log's minor release: px4-v1.14.4 for a log of v1.14.3, px4-v1.17 for one of
+// v1.17.0. Empty: there is no such profile.
 std::string profile_of(const FlightLog& log) {
   if (!log.release) return "";
-  const std::string prefix = fmt::format("px4-v{}.{}.", log.release->major, log.release->minor);
+  const std::string minor = fmt::format("px4-v{}.{}", log.release->major, log.release->minor);
   for (const std::string_view name : profiles_for(log)) {
-    if (name.starts_with(prefix)) return std::string(name);
+    if (name == minor || name.starts_with(minor + ".")) return std::string(name);
   }
   return "";
 }
@@ -44,6 +44,11 @@ Result<void> choose_profile(const std::string& file, FlightLog& log) {
   if (!log.profile.empty()) {
     log.notes.push_back(fmt::format("the profile is {}, because PX4 {} wrote the log (--profile)",
                                     log.profile, log.release->to_string()));
+    const std::string_view as_of = find_profile(log.profile)->as_of;
+    if (!as_of.empty()) {
+      log.notes.push_back(
+          fmt::format("{} is the law of {}; the final release may differ", log.profile, as_of));
+    }
     return {};
   }
   if (log.units.front().module == Module::mc_att_control) {

@@ -193,7 +193,7 @@ class Replay {
     failed_ += fails_a_run(result.verdict) ? 1 : 0;
   }
 
-  // A log of v1.14 to v1.16 counts once for each of its units.
+  // A log of v1.14 to v1.18 counts once for each of its units.
   void conclude() const {
     if (globals_.quiet && failed_ == 0) return;
     const std::size_t apart = entries_.size() - passed_ - failed_;

@@ -135,7 +135,7 @@ void add_assumed(Command command, std::vector<std::string>& assumed) {
       .option("--assume", assumed,
               fmt::format(
                   "What was true in the flight where the log lacks a topic: some of {}; default "
-                  "for v1.5.5 and v1.3.4: {}; default for v1.14 to v1.16: {}",
+                  "for v1.5.5 and v1.3.4: {}; default for v1.14 to v1.18: {}",
                   fmt::join(assumption_words(), ", "),
                   fmt::join(assumption_words(Module::mc_att_control, true), ","),
                   assumed_by_default_of_units()))

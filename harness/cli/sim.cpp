@@ -202,7 +202,7 @@ void add_sim(const CommandLine& line) {
       .type("CASE");
   command
       .option("--rate", options->rate,
-              "Loop rate [Hz]; for v1.14 to v1.16 the rates of both units, such as 250:1000")
+              "Loop rate [Hz]; for v1.14 to v1.18 the rates of both units, such as 250:1000")
       .type("HZ");
   command
       .option("--timing", options->timing,
@@ -217,7 +217,7 @@ void add_sim(const CommandLine& line) {
   command
       .option("--out", options->out,
               fmt::format("Write the trace as CSV, or in the format of the name's ending ({}); for "
-                          "v1.14 to v1.16, F.csv has the rate unit and F.attitude_unit.csv the "
+                          "v1.14 to v1.18, F.csv has the rate unit and F.attitude_unit.csv the "
                           "attitude unit",
                           written_endings()))
       .type("F");

@@ -320,7 +320,7 @@ void add_stress(const CommandLine& line) {
                "response time and deadline misses");
   add_port(command, options->host);
   add_rates(command, options->rates,
-            "Loop rates [Hz], separated by commas; for v1.14 to v1.16 pairs such as 250:1000")
+            "Loop rates [Hz], separated by commas; for v1.14 to v1.18 pairs such as 250:1000")
       .shows_default("250,500,1000,2000,4000,8000");
   command.option("--duration", options->duration_s, "Duration of the flight at each rate [s]")
       .range(0.1, 3600.0)

@@ -147,7 +147,7 @@ void add_sweep_rate(const CommandLine& line) {
       .type("CASE")
       .shows_default();
   add_rates(command, options->rates,
-            "Loop rates at which the largest delay is searched [Hz]; for v1.14 to v1.16 "
+            "Loop rates at which the largest delay is searched [Hz]; for v1.14 to v1.18 "
             "pairs such as 250:1000")
       .shows_default("50,100,250,500,1000");
   command

@@ -53,7 +53,7 @@ void add_from_log(Command command, VectorOptions& options) {
   const Option log =
       command
           .option("--from-log", options.from_log,
-                  "Make a case from this flight log in the suite DIR instead; of v1.14 to v1.16, "
+                  "Make a case from this flight log in the suite DIR instead; of v1.14 to v1.18, "
                   "a case of each unit")
           .type("FLIGHT.ulg")
           .group(option_group::logs);

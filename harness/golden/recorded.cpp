@@ -11,7 +11,6 @@
 #include "controller/actuation/battery_status.hpp"
 #include "controller/actuation/mixer.hpp"
 #include "harness/casefile/parse.hpp"
-#include "harness/core/suggestion.hpp"
 #include "harness/host/file_format.hpp"
 #include "harness/port/profiles.hpp"
 #include "harness/trace/provenance.hpp"
@@ -51,11 +50,11 @@ bool is_one_of(const std::string& name, const std::vector<std::string>& names) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// The newest profile that has the module.
+// The newest profile of a released version that has the module.
 std::string newest_profile_of(Module module) {
   const auto all = known_profiles();
   const auto found = std::find_if(all.begin(), all.end(), [&](const ProfileInfo& profile) {
-    return contains(profile.modules, module);
+    return contains(profile.modules, module) && profile.as_of.empty();
   });
   return std::string(found == all.end() ? default_profile : found->name);
 }
@@ -92,7 +91,7 @@ Result<void> check_parameter(const ModuleUnderTest& subject, const ParameterChan
   if (!is_one_of(change.name, names)) {
     return fail(fmt::format("unknown parameter `{}` of {} in {}{}", change.name,
                             name_of(subject.module), subject.profile,
-                            suggestion(change.name, names)));
+                            hint_for_parameter(change.name, subject.profile, names)));
   }
   actuation::BatteryOptions battery;
   if (subject.module == Module::battery_status &&

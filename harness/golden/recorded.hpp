@@ -61,12 +61,12 @@ class RecordedParts final : public TraceParts {
 
 // Reads inputs and outputs. The file of a mixer may have the format of mixer_csv.hpp. An empty
 // `profile` or `mixer` is taken from the provenance.toml in the folder of the file; a pipe has no
-// provenance. Without an entry there, the profile is the newest that has the module (px4-v1.5.5 or
-// px4-v1.16.0), and the mixer is the unscaled geometry that the file is named after ("4x.csv").
-// Parameters that only other profiles have are left out. A battery without BAT_N_CELLS has 3 cells,
-// as in the recordings of the firmware. Errors: those of read_csv() and check_parameter(); a
-// mixer trace whose definition is missing, invalid, or of another number of rotors; a `mixer` for
-// a trace of another module.
+// provenance. Without an entry there, the profile is the newest released one that has the module
+// (px4-v1.5.5 or px4-v1.16.0), and the mixer is the unscaled geometry that the file is named after
+// ("4x.csv"). Parameters that only other profiles have are left out. A battery without BAT_N_CELLS
+// has 3 cells, as in the recordings of the firmware. Errors: those of read_csv() and
+// check_parameter(); a mixer trace whose definition is missing, invalid, or of another number of
+// rotors; a `mixer` for a trace of another module.
 Result<Recorded> read_recorded(const std::filesystem::path& file, const std::string& profile = "",
                                const std::string& mixer = "");
 

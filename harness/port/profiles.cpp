@@ -4,17 +4,20 @@
 #include <limits>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "controller/actuation/battery_status.hpp"
 #include "controller/actuation/unit_table.hpp"
 #include "controller/cascade/parameters.hpp"
 #include "controller/mc_att_control/parameters.hpp"
+#include "harness/core/suggestion.hpp"
 
 namespace attest {
 namespace {
 
 // The modules of the law. Without `has_extensions`, only the controller.
 ProfileInfo profile_of(std::string_view name, bool is_of_cascade, bool has_extensions) {
-  ProfileInfo profile{name, {}};
+  ProfileInfo profile{name, {}, {}};
   for (const ModuleInfo& info : modules()) {
     if (info.is_of_cascade != is_of_cascade || (info.extension && !has_extensions)) continue;
     profile.modules |= only(info.module);
@@ -30,6 +33,7 @@ std::vector<ProfileInfo> make_profiles() {
   }
   for (const cascade::Profile profile : cascade::every_profile) {
     all.push_back(profile_of(cascade::name_of(profile), true, true));
+    all.back().as_of = cascade::traits_of(profile).as_of;
   }
   return all;
 }
@@ -54,6 +58,28 @@ std::vector<Parameter> battery_parameters() {
         {row.name, row.default_value, -any, any, row.unit, row.description, false});
   }
   return parameters;
+}
+
+// When a parameter has a name, seen from a profile in which it has another: "since px4-v1.17".
+template <typename Range>
+std::string when(const Range& range, const Range& of_other_name) {
+  if (range.newest == range.oldest) return fmt::format("in {}", name_of(range.oldest));
+  return range.oldest < of_other_name.oldest ? fmt::format("since {}", name_of(range.oldest))
+                                             : fmt::format("until {}", name_of(range.newest));
+}
+
+// The name that the profile has for the parameter that other profiles call `name`.
+template <typename Table, typename Profile>
+std::string other_name(const Table& table, Profile profile, std::string_view name) {
+  for (const auto& known : table) {
+    if (known.name != name) continue;
+    for (const auto& row : table) {
+      if (row.member != known.member || row.name == name) continue;
+      if (!row.profiles.contains(profile)) continue;
+      return fmt::format("; it is `{}` {}", row.name, when(row.profiles, known.profiles));
+    }
+  }
+  return "";
 }
 
 }  // namespace
@@ -110,6 +136,16 @@ std::vector<Parameter> parameters_of(Module module, const ProfileInfo& profile) 
     default:
       return {};
   }
+}
+
+std::string hint_for_parameter(const std::string& name, std::string_view profile,
+                               const std::vector<std::string>& known) {
+  const auto of_cascade = cascade::profile_from_name(profile);
+  if (of_cascade) {
+    const std::string renamed = other_name(cascade::attitude_parameters(), *of_cascade, name);
+    if (!renamed.empty()) return renamed;
+  }
+  return suggestion(name, known);
 }
 
 std::vector<std::string> parameter_names(Module module, std::string_view profile) {

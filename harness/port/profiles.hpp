@@ -15,6 +15,8 @@ namespace attest {
 struct ProfileInfo {
   std::string_view name;  // "px4-v1.5.5"
   ModuleSet modules;      // those of this version that attest knows
+  // What was read instead, if the version was not released yet: "v1.17.0-beta1 (2026-01)".
+  std::string_view as_of;
 };
 
 // Every profile: those of the controller, then those of the cascade, each newest first.
@@ -45,6 +47,12 @@ struct Parameter {
 // The parameters of a module in a profile, in the order of the law's own table. Empty if the
 // profile does not have the module.
 std::vector<Parameter> parameters_of(Module module, const ProfileInfo& profile);
+
+// The end of an error about a parameter that is not among the `known` ones of the profile: the name
+// that it has in this profile ("; it is `MAN_DEADZONE` since px4-v1.17"), or one that is spelled
+// almost the same ("; did you mean `MC_ROLL_P`?"). Empty if there is neither.
+std::string hint_for_parameter(const std::string& name, std::string_view profile,
+                               const std::vector<std::string>& known);
 
 // The names of a module's parameters. If the profile is not known, those of all profiles.
 std::vector<std::string> parameter_names(Module module, std::string_view profile);

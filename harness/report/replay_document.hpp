@@ -12,7 +12,7 @@
 //                     "median": 0, "p90": 0, "p99": 0, "largest": 0}],
 //         "notes": ["logged by PX4 v1.16.0"]}]}
 //
-// A log of v1.14 to v1.16 has an entry for each of its two units. A sample is unexplained if it is
+// A log of v1.14 to v1.18 has an entry for each of its two units. A sample is unexplained if it is
 // outside the limit and not "between_samples" (compare/log_agreement.hpp). A topic with such a
 // sample has the member "first_unexplained": tick, timestamp_us, channel, got, logged. An entry of
 // the kind "trace" has, in place of has_every_step, topics and notes, the members deviating_ticks,
@@ -32,7 +32,7 @@
 
 namespace attest {
 
-// "flight.ulg"; for a unit of v1.14 to v1.16 "flight.ulg: attitude unit".
+// "flight.ulg"; for a unit of v1.14 to v1.18 "flight.ulg: attitude unit".
 std::string title_of(const LoggedUnit& log);
 
 // The agreement of each topic of a unit. The lines below the table say how many of the deviations

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 #include <pugixml.hpp>
 
+#include "harness/port/profiles.hpp"
 #include "harness/report/text.hpp"
 #include "harness/verify/claim.hpp"
 
@@ -50,8 +51,15 @@ std::string rate_text(const RunResult& run) {
   return counted(run.rates.size(), "rate");
 }
 
+// "px4-v1.16.0", "px4-v1.17 as of v1.17.0-beta1 (2026-01)"
+std::string profile_text(const std::string& name) {
+  const ProfileInfo* const known = find_profile(name);
+  if (known == nullptr || known->as_of.empty()) return one_line(name);
+  return fmt::format("{} as of {}", name, known->as_of);
+}
+
 std::string text_of(const Claim& claim, const RunResult& run) {
-  const std::string profile = one_line(claim.profile);
+  const std::string profile = profile_text(claim.profile);
   if (claim.failing.size() == 1) {
     return fmt::format("none: {}, a group fails ({})", profile, names_of(claim.failing));
   }

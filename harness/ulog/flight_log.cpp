@@ -92,7 +92,7 @@ Error nothing_in(const std::filesystem::path& path, const std::vector<ModuleCont
           path.string()};
 }
 
-// The sample before the first step. A unit of v1.14 to v1.16 takes some flags as true before the
+// The sample before the first step. A unit of v1.14 to v1.18 takes some flags as true before the
 // first sample of their topic, so they are true here.
 Sample first_sample(const ModuleContents& log, LogRules rules) {
   Sample sample;

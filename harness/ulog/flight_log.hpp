@@ -61,7 +61,7 @@ struct LoggedUnit {
   // Unless null: the ticks, which are then neither in `trace` nor in `known`.
   std::shared_ptr<LoggedTicks> ticks;
   std::vector<LoggedOutput> outputs;
-  // True if nothing shows that the log lacks a step of the unit. For a log of v1.14 to v1.16, it
+  // True if nothing shows that the log lacks a step of the unit. For a log of v1.14 to v1.18, it
   // must also begin on the ground, with no input assumed. If false, outputs that depend on earlier
   // steps (the integral, the derivative) cannot be computed exactly from the log.
   bool has_every_step = false;
@@ -90,7 +90,7 @@ struct FlightLog {
 // v1.16 only if that step is at most 2 ms earlier, because the log may lack a later step. A second
 // output of the same step is not paired.
 //
-// In a log of v1.14 to v1.16, several modules publish the setpoints, depending on the mode:
+// In a log of v1.14 to v1.18, several modules publish the setpoints, depending on the mode:
 // - vehicle_attitude_setpoint is an output of the attitude unit if the unit makes it from the
 //   sticks, else an input of this unit.
 // - vehicle_rates_setpoint is an output of the attitude unit in modes with attitude control. It is

@@ -1,4 +1,4 @@
-// Tells which samples of a log a unit of PX4 v1.14 to v1.16 published itself. Depending on the
+// Tells which samples of a log a unit of PX4 v1.14 to v1.18 published itself. Depending on the
 // mode, other modules publish vehicle_attitude_setpoint and vehicle_rates_setpoint.
 #pragma once
 

@@ -159,7 +159,7 @@ void add_topic(const LogTopic& from, const Trace& trace, Topics& topics) {
 }
 
 // The topic and the field for a column of the plant. A column without a topic becomes a topic with
-// the field `value`. A unit of v1.14 to v1.16 receives an estimate of the true state at other
+// the field `value`. A unit of v1.14 to v1.18 receives an estimate of the true state at other
 // times. So if the unit has a topic of that name, the true state is in the topic `..._groundtruth`,
 // as in PX4's simulators.
 std::pair<std::string, std::string> plant_field(std::string_view path, Module module,

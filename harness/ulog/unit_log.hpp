@@ -11,7 +11,7 @@ namespace attest::ulog {
 enum class LogRules : std::uint8_t {
   attest,      // instances tell publishers apart; a unit has a sample from its timestamp on
   controller,  // PX4 of v1.5.5 and v1.3.4: the same rules as attest
-  cascade      // PX4 of v1.14 to v1.16: as in flight_log.hpp
+  cascade      // PX4 of v1.14 to v1.18: as in flight_log.hpp
 };
 
 // A unit with LoggedUnit::ticks. `first`: the sample before the first step, with bits in `updated`

@@ -1,7 +1,7 @@
 """usage: cascade_log.py OUT [--thin TOPIC=N]... [--lose TOPIC=N]... [--without TOPIC]...
                        [--profile PROFILE] [--release N.N.N] [--from S] [--rate-max HZ]
 
-Writes the ULog that PX4's logger would have written of a flight with both units of v1.14 to v1.16:
+Writes the ULog that PX4's logger would have written of a flight with both units of v1.14 to v1.18:
 the attitude unit at 250 Hz, the rate unit at 1 kHz, in position, stabilized and acro mode. The
 outputs are those of the reference (`attest record`), for inputs that a case describes.
 Topics have the fields of PX4, in its order, and the times at which its modules publish.

@@ -54,7 +54,7 @@ units_log() {
   "$PYTHON" "$SOURCE/tests/cli/cascade_log.py" "$@"
 }
 
-@test "a log of v1.14 to v1.16 becomes a case of each unit, at the rates of the unit" {
+@test "a log of v1.14 to v1.18 becomes a case of each unit, at the rates of the unit" {
   units_log flight.ulg
   "$ATTEST" vectors ours --from-log flight.ulg --from 0.9 --to 2.9 >out.txt 2>/dev/null
   made=ours/cases/px4-v1.16.0/from_log/flight_from_0_9s_to_2_9s

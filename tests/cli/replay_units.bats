@@ -1,4 +1,4 @@
-# Flight logs of PX4 v1.14 to v1.16, with attitude unit and rate unit.
+# Flight logs of PX4 v1.14 to v1.18, with attitude unit and rate unit.
 load common
 
 setup_file() {

@@ -54,7 +54,7 @@ class CascadeAttitudeUnit : public ::testing::TestWithParam<Profile> {
 
   float thrust() const { return out_.vehicle_rates_setpoint.thrust_body[2]; }
   float stick_thrust() const { return -out_.vehicle_attitude_setpoint.thrust_body[2]; }
-  bool is_newest() const { return GetParam() == Profile::px4_v1_16_0; }
+  bool is_from_v1_16_0() const { return from_v1_16_0.contains(GetParam()); }
 
   AttitudeUnit<float> unit_;
   attest_attitude_inputs in_{};
@@ -171,14 +171,15 @@ TEST_P(CascadeAttitudeUnit, AResetOfTheEstimatorTurnsAnOlderSetpointOnly) {
 
 TEST_P(CascadeAttitudeUnit, AutotuneAddsItsRatesForASecond) {
   in_.autotune_attitude_control_status.rate_sp[0] = 9.0f;  // beyond the limit
-  in_.autotune_attitude_control_status.state = 4;
+  const bool is_from_v1_17 = from_v1_17.contains(GetParam());
+  in_.autotune_attitude_control_status.state = is_from_v1_17 ? 9 : 4;
   in_.autotune_attitude_control_status.timestamp = in_.timestamp;
   step(everything);
   EXPECT_EQ(out_.vehicle_rates_setpoint.roll, 9.0f);
   for (int i = 0; i < 250; ++i) step(0);
   EXPECT_EQ(out_.vehicle_rates_setpoint.roll, 0.0f);
   in_.autotune_attitude_control_status.timestamp = in_.timestamp;
-  in_.autotune_attitude_control_status.state = 3;
+  in_.autotune_attitude_control_status.state = is_from_v1_17 ? 4 : 3;
   step(everything);
   EXPECT_EQ(out_.vehicle_rates_setpoint.roll, 0.0f);
 }
@@ -234,11 +235,11 @@ TEST_P(CascadeAttitudeUnit, TheLowestThrustWaitsForTheTakeOffFromV1_15_4On) {
   EXPECT_NEAR(stick_thrust(), 0.08f, 1e-6f);
 }
 
-TEST_P(CascadeAttitudeUnit, OnlyV1_16_0FollowsTheHoverEstimate) {
+TEST_P(CascadeAttitudeUnit, FollowsTheHoverEstimateFromV1_16_0On) {
   stabilize(true);
   in_.hover_thrust_estimate = {.hover_thrust = 0.3f, .valid = 1};
   for (int i = 0; i < 2000; ++i) step(everything);
-  EXPECT_NEAR(stick_thrust(), is_newest() ? 0.3f : 0.5f, 1e-5f);
+  EXPECT_NEAR(stick_thrust(), is_from_v1_16_0() ? 0.3f : 0.5f, 1e-5f);
   in_.hover_thrust_estimate.valid = 0;
   for (int i = 0; i < 2000; ++i) step(everything);
   EXPECT_NEAR(stick_thrust(), 0.5f, 1e-5f) << "MPC_THR_HOVER while not valid";

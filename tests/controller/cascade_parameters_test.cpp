@@ -31,20 +31,40 @@ TEST(CascadeParameters, RowsAreCompleteAndFound) {
   }
 }
 
-// Together the rows of v1.16.0, which has every parameter, name each member once.
-TEST(CascadeParameters, EveryMemberHasOneName) {
-  const Profile newest = Profile::px4_v1_16_0;
-  const std::size_t count =
-      names_of(attitude_parameters(), newest).size() + names_of(rate_parameters(), newest).size();
-  EXPECT_EQ(count * sizeof(float), sizeof(Parameters));
-  Parameters parameters{};
-  for (const ParameterTable table : {attitude_parameters(), rate_parameters()}) {
-    for (const ParameterInfo& info : table) {
-      if (!info.profiles.contains(newest)) continue;
-      EXPECT_EQ(parameters.*info.member, 0.0f) << info.name << " shares its member";
-      parameters.*info.member = 1.0f;
+TEST(CascadeParameters, NoTwoShareAMemberInAProfile) {
+  for (const Profile profile : every_profile) {
+    std::set<const float*> members;
+    const Parameters parameters{};
+    for (const ParameterTable table : {attitude_parameters(), rate_parameters()}) {
+      for (const ParameterInfo& info : table) {
+        if (!info.profiles.contains(profile)) continue;
+        EXPECT_TRUE(members.insert(&(parameters.*info.member)).second) << info.name;
+      }
     }
   }
+}
+
+TEST(CascadeParameters, EveryMemberHasAName) {
+  std::set<const float*> members;
+  const Parameters parameters{};
+  for (const ParameterTable table : {attitude_parameters(), rate_parameters()}) {
+    for (const ParameterInfo& info : table) members.insert(&(parameters.*info.member));
+  }
+  EXPECT_EQ(members.size() * sizeof(float), sizeof(Parameters));
+}
+
+// The place of MPC_YAW_EXPO is a constant from v1.17 on, and MAN_DEADZONE is a new name.
+TEST(CascadeParameters, CurveOfTheYawStickByProfile) {
+  for (const Profile profile : {Profile::px4_v1_16_0, Profile::px4_v1_17, Profile::px4_v1_18}) {
+    const auto gains =
+        attitude_unit_gains<float>(default_parameters(attitude_parameters(), profile)).sticks;
+    EXPECT_EQ(gains.yaw_expo, 0.6f);
+    EXPECT_EQ(gains.yaw_deadzone, 0.1f);
+  }
+  const auto names = names_of(attitude_parameters(), Profile::px4_v1_17);
+  EXPECT_TRUE(names.contains("MAN_DEADZONE"));
+  EXPECT_FALSE(names.contains("MPC_HOLD_DZ"));
+  EXPECT_FALSE(names.contains("MPC_YAW_EXPO"));
 }
 
 TEST(CascadeParameters, EachProfileHasItsOwn) {

@@ -1,4 +1,4 @@
-// The level events for the units of v1.14 to v1.16.
+// The level events for the units of v1.14 to v1.18.
 #include <cmath>
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// What PX4 v1.14 to v1.16 logs is divided between the attitude unit and the rate unit.
+// What PX4 v1.14 to v1.18 logs is divided between the attitude unit and the rate unit.
 #include "harness/ulog/unit_log.hpp"
 
 #include <cstring>
