@@ -97,8 +97,7 @@ Result<VectorResult> CaseJob::judged(const Vector& vector) {
   const RunConfiguration& configuration = vector.configuration;
   if (!vehicle_model_)
     return evaluate_case(the_case, configuration.rate.motor_unit, *golden_, *host_, judge_);
-  return evaluate_flight(the_case, configuration, *vehicle_model_, *golden_, *host_,
-                         judge_.save_traces);
+  return evaluate_flight(the_case, configuration, *vehicle_model_, *golden_, *host_, judge_);
 }
 
 Result<VectorResult> TimedJob::run(std::size_t) {

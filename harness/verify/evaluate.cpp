@@ -148,6 +148,7 @@ Result<VectorResult> evaluate_case(const Case& the_case, const Rate& rate, const
   if (numeric_for_exact || numeric_for_events) level = Level::numeric;
   if (level == Level::exact && !expected->is_exact) return other_bits(the_case, rate);
   result.by_golden = !expected->is_exact;
+  result.compared = level;
   const auto bits = host.declarations().fraction_bits;
   Trace answered = expected->trace;
   for (Sample& sample : answered.samples) sample.clear_outputs();

@@ -21,7 +21,7 @@
 namespace attest {
 
 struct JudgeOptions {
-  Level level = Level::numeric;            // of open-loop cases
+  Level level = Level::numeric;            // of flights, events means numeric
   std::filesystem::path save_traces = {};  // the folder of save_traces(); empty: not saved
   // Replace the parameters of each open-loop case whose module and profile have them. The expected
   // outputs are then those of the reference, which must agree with the golden of the unchanged
@@ -42,18 +42,17 @@ Result<VectorResult> evaluate_case(const Case& the_case, const Rate& rate, const
 
 // Flies a fresh unit. Compares each output with that of the reference for the same inputs, the
 // flight with the golden up to the golden's horizon, and the metrics with their bounds and the
-// golden's values. The level is always numeric, because the results of a plant differ in the last
-// bits between processors. `saved_traces`: the folder of save_traces(); empty: not saved. REQUIRES:
-// the host's course is this case with this vehicle model. Errors: those of evaluate_case(); the
-// flight cannot be set up.
+// golden's values. Only the outputs are compared at the level exact, because the results of a plant
+// differ in the last bits between processors. REQUIRES: the host's course is this case with this
+// vehicle model. Errors: those of evaluate_case(); the flight cannot be set up.
 Result<VectorResult> evaluate_flight(const Case& the_case, const RunConfiguration& configuration,
                                      const VehicleModel& vehicle_model, const Golden& golden,
-                                     PortHost& host,
-                                     const std::filesystem::path& saved_traces = {});
+                                     PortHost& host, const JudgeOptions& options = {});
 
-// The same at recorded times, for which no golden exists. The flight of the reference at the same
-// times takes the place of the golden. A bound that the reference violates in that flight is not
-// applied. Errors: the flight cannot be set up; the reference loses the vehicle at these times.
+// The same at the level numeric at recorded times, for which no golden exists. The flight of the
+// reference at the same times takes the place of the golden. A bound that the reference violates in
+// that flight is not applied. Errors: the flight cannot be set up; the reference loses the vehicle
+// at these times.
 Result<VectorResult> evaluate_timed_flight(const Case& the_case,
                                            const RunConfiguration& configuration,
                                            const VehicleModel& vehicle_model,

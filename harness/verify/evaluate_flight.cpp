@@ -107,7 +107,7 @@ Result<Comparison> compare_units(const Flown& flown, const std::string& profile,
 // up to the horizon. NaN or infinity in an output that is finite in all rows fails at every tick,
 // also beyond the horizon.
 Result<void> judge_ticks(const Case& the_case, const Flown& flown, const ReferenceFlight& reference,
-                         std::optional<int> fraction_bits, VectorResult& result) {
+                         Level level, std::optional<int> fraction_bits, VectorResult& result) {
   // The horizon is that of floats. A port in fixed point rounds more, and in flight its rounding
   // changes its later inputs. A port with 22 fraction bits was measured to deviate from the
   // golden's rates by seven times the tolerance of its LSBs. With 30 bits, seven times that
@@ -117,14 +117,16 @@ Result<void> judge_ticks(const Case& the_case, const Flown& flown, const Referen
   const double horizon_s = fraction_bits.value_or(as_near_as_floats_bits) < as_near_as_floats_bits
                                ? 0
                                : reference.horizon_s;
-  const Tolerances tolerances =
-      tolerances_of(the_case, Level::numeric, fraction_bits, flown.trace.samples.size());
-  auto comparison = compare_units(flown, the_case.profile, tolerances, fraction_bits);
+  const std::size_t ticks = flown.trace.samples.size();
+  result.compared = level;
+  auto comparison = compare_units(
+      flown, the_case.profile, tolerances_of(the_case, level, fraction_bits, ticks), fraction_bits);
   if (!comparison) return tl::unexpected(comparison.error());
   const bool answers_agree = comparison->agrees();
   if (answers_agree) {
-    comparison = with_tightest(compare_rows(flown.trace, reference.rows, horizon_s, tolerances),
-                               *comparison);
+    const Tolerances of_plant = tolerances_of(the_case, Level::numeric, fraction_bits, ticks);
+    comparison =
+        with_tightest(compare_rows(flown.trace, reference.rows, horizon_s, of_plant), *comparison);
   }
   if (const auto non_finite = first_non_finite(flown.trace, reference.rows)) {
     if (!comparison->first) comparison->first = non_finite;
@@ -137,9 +139,9 @@ Result<void> judge_ticks(const Case& the_case, const Flown& flown, const Referen
 }
 
 Result<void> judge_flight(const Case& the_case, const Flown& flown,
-                          const ReferenceFlight& reference, std::optional<int> fraction_bits,
-                          VectorResult& result) {
-  auto judged = judge_ticks(the_case, flown, reference, fraction_bits, result);
+                          const ReferenceFlight& reference, Level level,
+                          std::optional<int> fraction_bits, VectorResult& result) {
+  auto judged = judge_ticks(the_case, flown, reference, level, fraction_bits, result);
   if (!judged) return judged;
   std::vector<std::string> reasons;
   if (!result.reason.empty()) reasons.push_back(result.reason);
@@ -183,9 +185,10 @@ std::optional<PortFault> fault_of(const Course& course, const FlightPlan& plan,
 
 Result<VectorResult> evaluate_with(const Course& course, const FlightPlan& plan,
                                    const ReferenceFlight& reference, PortHost& host,
-                                   const std::filesystem::path& saved_traces) {
+                                   const JudgeOptions& options) {
   const Stopwatch stopwatch;
   const Case& the_case = *course.the_case;
+  const Level level = options.level == Level::exact ? Level::exact : Level::numeric;
   VectorResult result = result_for(the_case, plan.configuration);
   if (marks_declined(host.declarations(), result)) return result;
   const auto flown = host.fly(plan);
@@ -194,18 +197,19 @@ Result<VectorResult> evaluate_with(const Course& course, const FlightPlan& plan,
   const auto fault = fault_of(course, plan, *flown);
   Result<void> judged;
   if (!fault) {
-    judged = judge_flight(the_case, *flown, reference, bits, result);
+    judged = judge_flight(the_case, *flown, reference, level, bits, result);
   } else if (leaves_ticks_to_judge(*fault)) {
-    judged = judge_ticks(the_case, *flown, reference, bits, result);
+    judged = judge_ticks(the_case, *flown, reference, level, bits, result);
     judge_after(*fault, result);
   } else {
     judge(*fault, result);
   }
   if (!judged) return tl::unexpected(judged.error());
-  const Tolerances tolerances =
-      tolerances_of(the_case, Level::numeric, bits, flown->trace.samples.size());
-  save_flight(saved_traces, flown->trace, tolerances, result);
-  if (flown->attitude_trace) save_flight(saved_traces, *flown->attitude_trace, tolerances, result);
+  const Tolerances tolerances = tolerances_of(the_case, level, bits, flown->trace.samples.size());
+  save_flight(options.save_traces, flown->trace, tolerances, result);
+  if (flown->attitude_trace) {
+    save_flight(options.save_traces, *flown->attitude_trace, tolerances, result);
+  }
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }
@@ -234,7 +238,7 @@ bool fails_by_golden(const VectorResult& result) {
 // as it is, the reference does not agree with the golden.
 Result<VectorResult> evaluate_from_one_period_on(const Course& course, FlightPlan plan,
                                                  const ReferenceFlight& golden, PortHost& host,
-                                                 const std::filesystem::path& saved_traces) {
+                                                 const JudgeOptions& options) {
   const Case& the_case = *course.the_case;
   if (auto checked = check_golden(course, plan, golden); !checked) {
     return tl::unexpected(checked.error());
@@ -244,20 +248,20 @@ Result<VectorResult> evaluate_from_one_period_on(const Course& course, FlightPla
       reference_flight(begun, plan.configuration, *course.vehicle_model, plan.timing);
   if (!reference) return tl::unexpected(reference.error());
   plan.from_one_period_on = true;
-  return evaluate_with({&begun, course.vehicle_model}, plan, *reference, host, saved_traces);
+  return evaluate_with({&begun, course.vehicle_model}, plan, *reference, host, options);
 }
 
 }  // namespace
 
 Result<VectorResult> evaluate_flight(const Case& the_case, const RunConfiguration& configuration,
                                      const VehicleModel& vehicle_model, const Golden& golden,
-                                     PortHost& host, const std::filesystem::path& saved_traces) {
+                                     PortHost& host, const JudgeOptions& options) {
   const auto reference = expected_flight(the_case, configuration, vehicle_model.vehicle(), golden);
   if (!reference) return tl::unexpected(reference.error());
   const Course course{&the_case, &vehicle_model};
   const auto plan = FlightPlan::as_scheduled(the_case, configuration);
   if (!has_fixed_step(host.declarations(), the_case)) {
-    auto result = evaluate_with(course, plan, *reference, host, saved_traces);
+    auto result = evaluate_with(course, plan, *reference, host, options);
     if (!result || !fails_by_golden(*result)) return result;
     const auto checked = check_golden(course, plan, *reference);
     return checked ? std::move(result) : tl::unexpected(checked.error());
@@ -266,7 +270,7 @@ Result<VectorResult> evaluate_flight(const Case& the_case, const RunConfiguratio
   if (has_other_steps(host.declarations(), the_case, configuration.rate.motor_unit, plan.timing,
                       result))
     return result;
-  return evaluate_from_one_period_on(course, plan, *reference, host, saved_traces);
+  return evaluate_from_one_period_on(course, plan, *reference, host, options);
 }
 
 Result<VectorResult> evaluate_timed_flight(const Case& the_case,
@@ -286,7 +290,8 @@ Result<VectorResult> evaluate_timed_flight(const Case& the_case,
     if (value < metric.min) metric.min = -std::numeric_limits<double>::infinity();
     if (value > metric.max) metric.max = std::numeric_limits<double>::infinity();
   }
-  return evaluate_with({&relaxed, &vehicle_model}, plan, *reference, host, saved_traces);
+  return evaluate_with({&relaxed, &vehicle_model}, plan, *reference, host,
+                       {.save_traces = saved_traces});
 }
 
 }  // namespace attest

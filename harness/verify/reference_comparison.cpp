@@ -59,7 +59,8 @@ Result<ReferenceComparison> compare_with_reference(const Trace& flown, const std
                                                    const Tolerances& tolerances,
                                                    std::optional<int> fraction_bits) {
   const ModuleUnderTest subject{profile, module_of(flown.present)};
-  const auto meter = margin_meter(subject);
+  const bool is_exact = tolerances.level() == Level::exact;
+  const auto meter = is_exact ? nullptr : margin_meter(subject);
   Answering answering(flown, tolerances);
   const auto compared = for_each_reference_output(
       subject, flown,

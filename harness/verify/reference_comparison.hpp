@@ -30,7 +30,8 @@ struct ReferenceComparison {
 };
 
 // Gives the inputs of `flown` to a unit of the reference in its power-on state, and compares each
-// tick. A NaN or infinity where the reference has a number is never undecided. `fraction_bits` is
+// tick. A NaN or infinity where the reference has a number is never undecided, and neither is a
+// deviation at the level exact, where ports round as the reference does. `fraction_bits` is
 // set for a port in fixed point, which rounds more. REQUIRES: `flown` is the whole trace of a unit,
 // with at least one tick. Errors: the reference does not have the profile, or fails.
 Result<ReferenceComparison> compare_with_reference(const Trace& flown, const std::string& profile,

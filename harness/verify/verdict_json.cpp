@@ -156,6 +156,7 @@ nlohmann::json to_json(const VectorResult& result) {
   };
   if (result.exact_only) out["exact_only"] = true;
   if (result.by_golden) out["by_golden"] = true;
+  if (result.compared) out["compared"] = name_of(*result.compared);
   if (result.first) out["first"] = deviation_to_json(*result.first);
   if (result.worst) out["worst"] = deviation_to_json(*result.worst);
   if (result.tightest) out["tightest"] = headroom_to_json(*result.tightest);
@@ -188,6 +189,11 @@ Result<VectorResult> vector_result_from_json(const nlohmann::json& json) {
     reader.wrong(fmt::format("there is no verdict `{}`", verdict));
   out.exact_only = reader.has("exact_only") && reader.flag("exact_only");
   out.by_golden = reader.has("by_golden") && reader.flag("by_golden");
+  if (reader.has("compared")) {
+    const auto level = parse_level(reader.text("compared"));
+    if (!level) reader.wrong(level.error().message);
+    out.compared = level ? std::optional(*level) : std::nullopt;
+  }
   if (out.exact_only && out.verdict != Verdict::skip) {
     reader.wrong(fmt::format("`exact_only` is of a skip, and the verdict is {}", verdict));
   }

@@ -7,12 +7,18 @@ load common
   has "11 rates"
   run "$ATTEST" list --groups
   has "px4-v1.5.5/anti_windup"
+  has "px4-v1.17 is the law as of v1.17.0-beta1 (2026-01); the final release may differ"
+  run "$ATTEST" list --groups --profile px4-v1.16.0
+  lacks "as of"
 }
 
 @test "list prints the parameter table, the channels and the flight modes" {
   run "$ATTEST" list --parameters
+  has "of attitude_unit:"
+  has "of rate_unit:"
   has "MC_ROLLRATE_P"
   has "0.15"
+  has "px4-v1.18 is the law as of branch release-1.18 (2026-08)"
   run "$ATTEST" list --channels
   has "out/vehicle_rates_setpoint.roll"
   has "rad/s"
@@ -36,7 +42,7 @@ load common
   run "$ATTEST" doctor
   has "of a port's process: 10 s per answer"
   [ "$status" -eq 0 ]
-  has "agrees with 68 of 68 traces recorded from the firmware"
+  has "agrees with 81 of 81 traces recorded from the firmware"
   lacks "BAD"
   has "px4-v1.3.4/flight, px4-v1.3.4/flight_timing, px4-v1.3.4/instances, px4-v1.5.5/flight"
   lacks "px4-v1.3.4/tpa"
