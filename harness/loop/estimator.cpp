@@ -58,6 +58,10 @@ std::array<float, 4> in_single(const Quaternion& q) {
           static_cast<float>(q.z)};
 }
 
+std::array<float, 3> in_single(const Vector3& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
 }  // namespace
 
 UnitEstimator::UnitEstimator(const Case& the_case, const Rate& own, const Rate& timeline)
@@ -66,7 +70,7 @@ UnitEstimator::UnitEstimator(const Case& the_case, const Rate& own, const Rate& 
   if (reset && the_case.module == Module::attitude_unit) {
     reset_ = {reset->at.on(timeline), reset->turn};
   }
-  if (the_case.module == Module::rate_unit) derivative_.emplace(own);
+  if (the_case.module == Module::rate_unit) gyro_filter_.emplace(own);
 }
 
 Estimate UnitEstimator::sample(Nanoseconds now, const PlantState& state) {
@@ -78,14 +82,18 @@ Estimate UnitEstimator::sample(Nanoseconds now, const PlantState& state) {
     estimate.delta_q_reset = in_single(reset_->turn);
   }
   estimate.state = noisy_.sample(seen);
-  if (derivative_) {
-    const auto& [q, roll, pitch, yaw] = estimate.state;
-    const Vector3& acceleration = derivative_->sample(now, {roll, pitch, yaw});
-    for (std::size_t i = 0; i < 3; ++i) {
-      estimate.acceleration_rad_s2[i] = static_cast<float>(acceleration[i]);
-    }
-  }
+  if (gyro_filter_) filter(estimate);
   return estimate;
+}
+
+void UnitEstimator::filter(Estimate& estimate) {
+  ControlState& state = estimate.state;
+  gyro_filter_->sample(estimate.sampled, {state.roll_rate, state.pitch_rate, state.yaw_rate});
+  const std::array rate = in_single(gyro_filter_->rate_rad_s());
+  state.roll_rate = rate[0];
+  state.pitch_rate = rate[1];
+  state.yaw_rate = rate[2];
+  estimate.acceleration_rad_s2 = in_single(gyro_filter_->acceleration_rad_s2());
 }
 
 // The sum of twelve uniform numbers has variance 1, and is close enough to a normal distribution.

@@ -9,7 +9,7 @@
 #include "harness/casefile/case.hpp"
 #include "harness/core/random.hpp"
 #include "harness/core/time.hpp"
-#include "harness/loop/angular_acceleration.hpp"
+#include "harness/loop/gyro_filter.hpp"
 #include "harness/plant/plant.hpp"
 
 namespace attest {
@@ -19,7 +19,7 @@ using ControlState = decltype(attest_inputs::control_state);
 // An estimate of the plant's state. `sampled`: the time of that state, since the start of the case.
 struct Estimate {
   Nanoseconds sampled{0};
-  ControlState state{};
+  ControlState state{};                        // of the rate unit, filtered rates
   std::array<float, 3> acceleration_rad_s2{};  // angular acceleration, for the rate unit
   // For the attitude unit: the number of resets of the estimator, and the rotation of the last one.
   std::uint8_t resets = 0;
@@ -44,8 +44,8 @@ class NoisyEstimator {
 };
 
 // Takes the samples of one unit: the attitude estimate with its resets for the attitude unit, the
-// gyro with its derivative for the rate unit, attitude and rates for the controller. The noise of
-// the cascade's gyro uses the estimator's seed plus 1. No allocation.
+// filtered gyro for the rate unit, attitude and rates for the controller. The noise of the
+// cascade's gyro uses the estimator's seed plus 1. No allocation.
 class UnitEstimator {
  public:
   // `own` is the rate of the unit of the case's module, `timeline` that of the unit that commands
@@ -59,9 +59,11 @@ class UnitEstimator {
     Nanoseconds at;
     Quaternion turn;
   };
+  void filter(Estimate& estimate);
+
   NoisyEstimator noisy_;
   std::optional<Reset> reset_;
-  std::optional<AngularAcceleration> derivative_;
+  std::optional<GyroFilter> gyro_filter_;
 };
 
 }  // namespace attest

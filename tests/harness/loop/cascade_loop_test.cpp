@@ -197,21 +197,28 @@ TEST_F(CascadeLoop, EachUnitGetsItsOwnParameters) {
   EXPECT_EQ(std::count(notes_.begin(), notes_.end(), "rate unit gets MC_ROLL_P"), 0);
 }
 
-// The estimator's delay applies to the attitude unit only; the rate unit reads the gyro itself.
+// The estimator's delay applies to the attitude unit only; the rate unit reads the gyro itself. Its
+// samples of 0, 2, 4 and 6 mrad/s pass the low-pass of 40 Hz at 500 Hz, which has b = 0.0461318, a1
+// = -1.3073042 and a2 = 0.4918121 (models/README.md):
+//
+//     y1 = 2 b = 0.0922636    y2 = 8 b - a1 y1 = 0.489671    y3 = 16 b - a1 y2 - a2 y1 = 1.332881
 TEST_F(CascadeLoop, TheEstimateIsOldAndTheGyroIsNot) {
   case_.flight->estimator.delay = in_s(0.003);
   fly();
   EXPECT_EQ(attitude_unit_.last.vehicle_attitude.timestamp, start_us + 4000);
   EXPECT_EQ(attitude_unit_.last.vehicle_attitude.timestamp_sample, start_us + 1000);
   EXPECT_EQ(rate_unit_.last.vehicle_angular_velocity.timestamp_sample, start_us + 6000);
-  EXPECT_FLOAT_EQ(rate_unit_.last.vehicle_angular_velocity.xyz[0], 0.006f);
+  EXPECT_NEAR(rate_unit_.last.vehicle_angular_velocity.xyz[0], 0.001332881, 5e-8);
 }
 
-// The plant's rate grows by 1 rad/s^2. The filter has not settled after 6 ms.
+// The derivative of the same filtered rates, after the low-pass of 30 Hz. The weight of a new
+// sample is w = 2 ms / (2 ms + 1 / (2 pi 30 Hz)) = 0.273778. In rad/s^2:
+//
+//     d1 = w 0.0922636 / 2 = 0.0126298                d2 = d1 + w (0.397407 / 2 - d1) = 0.0635727
+//     d3 = d2 + w (0.843210 / 2 - d2) = 0.1615940
 TEST_F(CascadeLoop, TheRateUnitGetsTheAngularAcceleration) {
   fly();
-  EXPECT_GT(rate_unit_.last.vehicle_angular_velocity.xyz_derivative[0], 0.05f);
-  EXPECT_LT(rate_unit_.last.vehicle_angular_velocity.xyz_derivative[0], 1.3f);
+  EXPECT_NEAR(rate_unit_.last.vehicle_angular_velocity.xyz_derivative[0], 0.161594f, 2e-6f);
 }
 
 TEST_F(CascadeLoop, AResetTurnsTheEstimateAndIsCounted) {

@@ -73,5 +73,24 @@ TEST(Estimator, EachAxisHasNoiseOfItsOwn) {
   EXPECT_NE(estimate.roll_rate, estimate.yaw_rate);
 }
 
+// The rate unit gets filtered rates: of a step of 1 rad/s, 0.0133592 at first and then 0.0620863
+// (gyro_filter_test.cpp has the computation). The other units get the rates as they are.
+TEST(Estimator, FiltersTheGyroOfTheRateUnitOnly) {
+  const auto after_step = [](Module module) {
+    Case flight;
+    flight.module = module;
+    flight.flight.emplace();
+    UnitEstimator estimator(flight, Rate::hz(1000), Rate::hz(1000));
+    estimator.sample(Nanoseconds(0), {});
+    PlantState turning;
+    turning.rate_rad_s[1] = 1;
+    estimator.sample(Nanoseconds(1'000'000), turning);
+    return estimator.sample(Nanoseconds(2'000'000), turning);
+  };
+  EXPECT_NEAR(after_step(Module::rate_unit).state.pitch_rate, 0.0620863, 1e-6);
+  EXPECT_NEAR(after_step(Module::rate_unit).acceleration_rad_s2[1], 9.51087, 1e-4);
+  EXPECT_EQ(after_step(Module::mc_att_control).state.pitch_rate, 1);
+}
+
 }  // namespace
 }  // namespace attest
