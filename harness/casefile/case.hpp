@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "harness/casefile/flight.hpp"
@@ -166,6 +167,9 @@ struct Case {
   // The golden of the first profile has all columns, those of the other profiles only what differs
   // from it. The inputs and most outputs are the same in all profiles of a file.
   bool is_of_first_profile() const { return profiles.empty() || profile == profiles.front(); }
+
+  // The values of a parameter over time, or the constant `otherwise` if the case does not set it.
+  Signal parameter(std::string_view parameter_name, double otherwise) const;
 
   // The same case for another profile of its file.
   Case in_profile(const std::string& other) const;

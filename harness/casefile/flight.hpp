@@ -94,6 +94,9 @@ struct Flight {
   // The task that publishes what the actuators could not realise: multirotor_motor_limits, or in
   // the cascade control_allocator_status.
   TaskTiming saturation;
+  // Values of MC_AIRMODE: a parameter of the attitude unit, which the allocator reads, too.
+  // Case::of_module() sets it.
+  Signal airmode = Constant{0};
   Span actuator_delay{0, Span::In::seconds};  // from the unit's tick to the motors
   std::optional<BatteryFlight> battery;
   std::array<Signal, 3> wind_m_s{};  // of the air, NED

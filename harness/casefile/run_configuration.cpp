@@ -41,9 +41,17 @@ Case Case::in_profile(const std::string& other) const {
   return same;
 }
 
+Signal Case::parameter(std::string_view parameter_name, double otherwise) const {
+  for (const ParameterStimulus& own : parameters) {
+    if (own.name == parameter_name) return own.signal;
+  }
+  return Constant{otherwise};
+}
+
 Case Case::of_module(Module unit_of_flight) const {
   Case own = *this;
   if (!attitude_loop) return own;
+  own.flight->airmode = parameter("MC_AIRMODE", 0);
   own.module = unit_of_flight;
   const std::vector<std::string> known = parameter_names(unit_of_flight, profile);
   std::erase_if(own.parameters, [&](const ParameterStimulus& parameter) {

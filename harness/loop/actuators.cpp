@@ -22,12 +22,12 @@ Actuators::Actuators(const Vehicle& vehicle, Module module)
   commands_.fill(-1);
 }
 
-void Actuators::follow(const Sample& sample) {
+void Actuators::follow(const Sample& sample, Airmode airmode) {
   if (module_ == Module::attitude_unit) return;
   if (!info_of(module_).is_armed(sample)) {
     commands_.fill(-1);
   } else if (allocator_) {
-    allocate(sample.rate_out);
+    allocate(sample.rate_out, airmode);
   } else {
     mix(sample.out);
   }
@@ -42,12 +42,12 @@ void Actuators::mix(const attest_outputs& out) {
   saturation_.limits = limits_of(saturation);
 }
 
-void Actuators::allocate(const attest_rate_outputs& out) {
+void Actuators::allocate(const attest_rate_outputs& out, Airmode airmode) {
   const auto& torque = out.vehicle_torque_setpoint;
   const auto& thrust = out.vehicle_thrust_setpoint;
   if (torque.published == 0 || thrust.published == 0) return;
   const Allocation allocation =
-      allocator_->allocate(std::to_array(torque.xyz), std::to_array(thrust.xyz));
+      allocator_->allocate(std::to_array(torque.xyz), std::to_array(thrust.xyz), airmode);
   commands_ = allocation.commands;
   saturation_.unallocated_torque = allocation.unallocated_torque;
   saturation_.torque_setpoint_achieved = allocation.torque_setpoint_achieved;

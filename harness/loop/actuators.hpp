@@ -21,8 +21,8 @@ class Actuators {
 
   // Takes the outputs of a step. The mixer runs when the controller publishes its controls, the
   // allocator when the rate unit publishes torque and thrust. Disarmed, all motors stop and neither
-  // of them runs. Outputs of the attitude unit are ignored.
-  void follow(const Sample& sample);
+  // of them runs. Outputs of the attitude unit are ignored. `airmode` is for the allocator.
+  void follow(const Sample& sample, Airmode airmode = Airmode::off);
 
   const MotorCommands& commands() const { return commands_; }
   const Saturation& saturation() const { return saturation_; }  // of the last mixing or allocation
@@ -35,7 +35,7 @@ class Actuators {
 
  private:
   void mix(const attest_outputs& out);
-  void allocate(const attest_rate_outputs& out);
+  void allocate(const attest_rate_outputs& out, Airmode airmode);
 
   const Vehicle& vehicle_;
   Module module_;

@@ -11,9 +11,11 @@ namespace {
 
 constexpr Eigen::Index roll_column = 0, pitch_column = 1, yaw_column = 2, thrust_column = 3;
 
-// The largest decrease of thrust that makes room for yaw, as a fraction of full thrust. The mixer
-// has the same limit.
-constexpr double thrust_for_yaw = 0.15;
+// Yaw may exceed full speed by this much before it is reduced. Thrust is lowered in its place.
+constexpr double yaw_margin = 0.15;
+
+// A rotor whose speed changes less along a column does not decide how far to go along it.
+constexpr double weak = 0.2;
 
 // Torque about x, y, z and upward thrust of each rotor at full speed, in any common unit. A rotor
 // that turns counter-clockwise, seen from above, turns the body clockwise: positive about z, which
@@ -65,38 +67,37 @@ std::array<double, 4> scales_of(const Mix& mix) {
   return {roll_pitch, roll_pitch, mix.col(yaw_column).cwiseAbs().maxCoeff(), thrust / rotors};
 }
 
-// The largest number from 0 to `wanted` with slope * number <= room. A negative room comes from
-// rounding, and counts as 0.
-double limited(double wanted, double slope, double room) {
-  const double possible = std::max(room, 0.0);
-  return slope * wanted > possible ? possible / slope : wanted;
+std::array<float, rotors_max> in_single(const Eigen::VectorXd& rotors) {
+  std::array<float, rotors_max> result{};
+  for (Eigen::Index i = 0; i < rotors.size(); ++i) {
+    result[static_cast<std::size_t>(i)] = static_cast<float>(rotors(i));
+  }
+  return result;
 }
 
 }  // namespace
+
+Airmode airmode_of(double parameter) {
+  if (parameter == 1) return Airmode::roll_pitch;
+  return parameter == 2 ? Airmode::roll_pitch_yaw : Airmode::off;
+}
 
 ControlAllocator::ControlAllocator(const Vehicle& vehicle) : count_(vehicle.rotors.size()) {
   const Effectiveness effectiveness = effectiveness_of(vehicle);
   const Mix mix = mix_of(effectiveness);
   const std::array<double, 4> scales = scales_of(mix);
-  for (std::size_t i = 0; i < count_; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    const auto entry = [&](Eigen::Index axis) {
-      return static_cast<float>(mix(row, axis) / scales[static_cast<std::size_t>(axis)]);
-    };
-    Rotor& rotor = rotors_[i];
-    rotor.roll = entry(roll_column);
-    rotor.pitch = entry(pitch_column);
-    rotor.yaw = entry(yaw_column);
-    rotor.thrust = entry(thrust_column);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double torque = effectiveness(static_cast<Eigen::Index>(axis), row);
-      rotor.torque[axis] = static_cast<float>(torque * scales[axis]);
-    }
+  roll_ = in_single(mix.col(roll_column) / scales[roll_column]);
+  pitch_ = in_single(mix.col(pitch_column) / scales[pitch_column]);
+  yaw_ = in_single(mix.col(yaw_column) / scales[yaw_column]);
+  thrust_ = in_single(mix.col(thrust_column) / scales[thrust_column]);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto row = static_cast<Eigen::Index>(axis);
+    torque_[axis] = in_single(effectiveness.row(row).transpose() * scales[axis]);
   }
 }
 
 Allocation ControlAllocator::allocate(const std::array<float, 3>& torque,
-                                      const std::array<float, 3>& thrust) const {
+                                      const std::array<float, 3>& thrust, Airmode airmode) const {
   Allocation result;
   result.commands.fill(-1);
   const auto is_finite = [](float value) { return std::isfinite(value); };
@@ -106,93 +107,88 @@ Allocation ControlAllocator::allocate(const std::array<float, 3>& torque,
     result.torque_setpoint_achieved = false;
     return result;
   }
-  const std::array<double, 3> wanted{torque[0], torque[1], torque[2]};
-  const double up = std::max(-static_cast<double>(thrust[2]), 0.0);
-  const Speeds level = with_roll_pitch(roll_pitch_turns(wanted[0], wanted[1]), up);
-  const Speeds speeds = with_yaw(wanted[2], level);
-
-  std::array<double, 3> given{};
+  const Speeds speeds = desaturated(torque, -thrust[2], airmode);
+  std::array<double, 3> lacking{torque[0], torque[1], torque[2]};
   for (std::size_t i = 0; i < count_; ++i) {
-    const Rotor& rotor = rotors_[i];
-    const double speed = std::clamp(speeds[i] * static_cast<double>(rotor.thrust), 0.0, 1.0);
+    const double speed = std::clamp(speeds[i], 0.0, 1.0);
     result.commands[i] = static_cast<float>(2 * speed - 1);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      given[axis] += static_cast<double>(rotor.torque[axis]) * speed;
+      lacking[axis] -= static_cast<double>(torque_[axis][i]) * speed;
     }
   }
+  double squares = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto lacking = static_cast<float>(wanted[axis] - given[axis]);
-    if (std::abs(lacking) <= torque_resolution) continue;
-    result.unallocated_torque[axis] = lacking;
-    result.torque_setpoint_achieved = false;
+    squares += lacking[axis] * lacking[axis];
+    if (std::abs(lacking[axis]) <= torque_resolution) continue;
+    result.unallocated_torque[axis] = static_cast<float>(lacking[axis]);
   }
+  result.torque_setpoint_achieved = squares < achieved_below * achieved_below;
   return result;
 }
 
-ControlAllocator::Speeds ControlAllocator::roll_pitch_turns(double roll, double pitch) const {
-  Speeds turns{};
-  for (std::size_t i = 0; i < count_; ++i) {
-    const Rotor& rotor = rotors_[i];
-    const double turn =
-        static_cast<double>(rotor.roll) * roll + static_cast<double>(rotor.pitch) * pitch;
-    turns[i] = turn * full(i);
+void ControlAllocator::add(const Column& column, double amount, Speeds& speeds) {
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
+    speeds[i] += static_cast<double>(column[i]) * amount;
   }
-  return turns;
 }
 
-// Finds the largest part (0..1) of the roll and pitch changes `turns` that fits with this thrust or
-// a lower one; then the largest thrust, up to `thrust`, that fits with this part. Each rotor i is
-// between stopped and full if
-//
-//     0 <= part * turn_i + thrust <= full_i
-//
-// So the lowest possible thrust is part * lowest, where lowest = max(0, -turn_i) over all rotors.
-ControlAllocator::Speeds ControlAllocator::with_roll_pitch(Speeds turns, double thrust) const {
-  double lowest = 0;
-  for (std::size_t i = 0; i < count_; ++i) lowest = std::max(lowest, -turns[i]);
-  double part = limited(1, lowest, thrust);
-  for (std::size_t i = 0; i < count_; ++i) part = limited(part, lowest + turns[i], full(i));
-  for (std::size_t i = 0; i < count_; ++i) {
-    turns[i] *= part;
-    thrust = std::min(thrust, full(i) - turns[i]);
+// How far to go along a column, so that rotors beyond 0 or `full` return to it: as far as the one
+// that needs most in the positive direction, plus as far as the one that needs most in the negative
+// direction.
+double ControlAllocator::way_back(const Column& column, const Speeds& speeds, double full) {
+  double forwards = 0, backwards = 0;
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
+    const auto slope = static_cast<double>(column[i]);
+    if (std::abs(slope) < weak) continue;
+    const double way = (std::clamp(speeds[i], 0.0, full) - speeds[i]) / slope;
+    forwards = std::max(forwards, way);
+    backwards = std::min(backwards, way);
   }
-  for (std::size_t i = 0; i < count_; ++i) turns[i] += thrust;
-  return turns;
+  return forwards + backwards;
 }
 
-// Adds the largest part of the yaw torque that fits, then lowers the thrust as far as it requires.
-ControlAllocator::Speeds ControlAllocator::with_yaw(double yaw, Speeds speeds) const {
-  Speeds turns{};
-  for (std::size_t i = 0; i < count_; ++i) {
-    turns[i] = static_cast<double>(rotors_[i].yaw) * yaw * full(i);
+// The first step returns the rotors of one side. If it takes others beyond the opposite limit, the
+// second step halves what is left, so that both sides saturate equally.
+void ControlAllocator::desaturate(const Column& column, Speeds& speeds, double full) {
+  add(column, way_back(column, speeds, full), speeds);
+  add(column, way_back(column, speeds, full) / 2, speeds);
+}
+
+ControlAllocator::Speeds ControlAllocator::desaturated(const std::array<float, 3>& torque, float up,
+                                                       Airmode airmode) const {
+  const auto [roll, pitch, yaw] = torque;
+  Speeds speeds{};
+  add(roll_, roll, speeds);
+  add(pitch_, pitch, speeds);
+  add(thrust_, up, speeds);
+  switch (airmode) {
+    case Airmode::roll_pitch_yaw:
+      add(yaw_, yaw, speeds);
+      desaturate(thrust_, speeds);
+      desaturate(yaw_, speeds);
+      return speeds;
+    case Airmode::roll_pitch:
+      desaturate(thrust_, speeds);
+      break;
+    case Airmode::off:
+      lower_thrust(speeds);
+      desaturate(roll_, speeds);
+      desaturate(pitch_, speeds);
+      break;
   }
-  const double part = part_that_fits(turns, speeds);
-  double above = 0;
-  for (std::size_t i = 0; i < count_; ++i) {
-    speeds[i] += part * turns[i];
-    above = std::max(above, speeds[i] - full(i));
-  }
-  for (std::size_t i = 0; i < count_; ++i) speeds[i] -= above;
+  add_yaw(yaw, speeds);
   return speeds;
 }
 
-// The largest part of yaw that fits when the thrust is lowered by a suitable amount `lower`, which
-// is at least 0 and at most thrust_for_yaw:
-//
-//     0 <= speed_i + part * turn_i - lower <= full_i        for each rotor i
-//
-// Each lower bound on `lower` has to be at most each upper bound on it.
-double ControlAllocator::part_that_fits(const Speeds& yaw_turns, const Speeds& speeds) const {
-  double part = 1;
-  for (std::size_t i = 0; i < count_; ++i) {
-    const double room = full(i) - speeds[i];
-    part = limited(part, -yaw_turns[i], speeds[i]);
-    part = limited(part, yaw_turns[i], room + thrust_for_yaw);
-    for (std::size_t k = 0; k < count_; ++k) {
-      part = limited(part, yaw_turns[i] - yaw_turns[k], room + speeds[k]);
-    }
-  }
-  return part;
+void ControlAllocator::add_yaw(float yaw, Speeds& speeds) const {
+  add(yaw_, yaw, speeds);
+  desaturate(yaw_, speeds, 1 + yaw_margin);
+  lower_thrust(speeds);
+}
+
+// Desaturates along the thrust, unless that needs more thrust.
+void ControlAllocator::lower_thrust(Speeds& speeds) const {
+  if (way_back(thrust_, speeds, 1) <= 0) desaturate(thrust_, speeds);
 }
 
 }  // namespace attest

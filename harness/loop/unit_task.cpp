@@ -15,6 +15,7 @@ UnitTask::UnitTask(const Case& the_case, const Rate& rate, const Vehicle& vehicl
                    const Estimate& start)
     : module_(the_case.module),
       stimulus_(the_case, rate),
+      airmode_signal_(the_case.flight->airmode, timeline_of(the_case, rate)),
       actuators_(vehicle, the_case.module),
       driver_(unit, the_case.module),
       estimate_(start) {}
@@ -26,6 +27,7 @@ std::optional<PortFault> UnitTask::tick(std::size_t tick, Nanoseconds now,
 }
 
 void UnitTask::prepare(std::size_t tick, Nanoseconds now, const Arrivals& arrivals) {
+  airmode_ = airmode_of(airmode_signal_.at(now));
   changes_.clear();
   stimulus_.tick(tick, now, sample_, changes_);
   if (arrivals.estimate) estimate_ = *arrivals.estimate;
@@ -97,7 +99,7 @@ std::optional<PortFault> UnitTask::step(std::size_t tick) {
   const std::uint64_t timestamp_sample_us = stimulus_.timestamp_us(estimate_.sampled);
   auto fault =
       ports_.run([&] { return driver_.step(tick, changes_, sample_, timestamp_sample_us); });
-  if (!fault) actuators_.follow(sample_);
+  if (!fault) actuators_.follow(sample_, airmode_);
   return fault;
 }
 

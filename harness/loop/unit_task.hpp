@@ -70,10 +70,12 @@ class UnitTask {
 
   Module module_;
   Stimulus stimulus_;
+  Sampler airmode_signal_;
   Actuators actuators_;
   UnitDriver driver_;
   PortFloatEnvironment ports_;
   Sample sample_{};
+  Airmode airmode_ = Airmode::off;
   Estimate estimate_;
   std::vector<ParameterChange> changes_;
 };

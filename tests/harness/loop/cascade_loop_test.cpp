@@ -63,11 +63,11 @@ class NotingRateUnit final : public RateUnit {
     last = in;
     out.vehicle_torque_setpoint.xyz[0] = roll_torque;
     out.vehicle_torque_setpoint.published = 1;
-    out.vehicle_thrust_setpoint.xyz[2] = -0.5f;
+    out.vehicle_thrust_setpoint.xyz[2] = -thrust;
     out.vehicle_thrust_setpoint.published = 1;
     return result;
   }
-  float roll_torque = 0;
+  float roll_torque = 0, thrust = 0.5f;
   int result = ATTEST_OK;
   attest_rate_inputs last{};
 
@@ -243,6 +243,18 @@ TEST_F(CascadeLoop, TheAllocatorReportsTheTorqueThatItLacks) {
   EXPECT_EQ(rate.samples[1].rate_in.control_allocator_status.torque_setpoint_achieved, 0);
   EXPECT_GT(rate.samples[1].rate_in.control_allocator_status.unallocated_torque[0], 1);
   EXPECT_EQ(rate.plant[0].saturated, 1);
+}
+
+// MC_AIRMODE is a parameter of the attitude unit. Roll of 0.4 changes the speeds by 0.4 sqrt(1/2) =
+// 0.2828. Without airmode thrust 0.1 leaves 0.2 for the rotors on one side, with it 0.5657.
+TEST_F(CascadeLoop, TheAllocatorFollowsTheAirmodeInFlight) {
+  rate_unit_.roll_torque = 0.4f;
+  rate_unit_.thrust = 0.1f;
+  case_.parameters = {{"MC_AIRMODE", Step{0, 1, in_s(0.004)}}};
+  Trace rate;
+  fly({&rate, nullptr});
+  EXPECT_NEAR(rate.plant[1].motor[1], 2 * 0.2 - 1, 1e-6);
+  EXPECT_NEAR(rate.plant[2].motor[1], 2 * 0.565685 - 1, 1e-6);
 }
 
 TEST_F(CascadeLoop, OnAFloorThePlantKnowsWhetherItHasLanded) {
