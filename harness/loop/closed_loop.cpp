@@ -109,7 +109,7 @@ ClosedLoop::ClosedLoop(const Case& the_case, const LoopRate& rate, FlightTiming 
     : plant_(the_case, rate.motor_unit, vehicle, plant),
       unit_(the_case.of_module(the_case.module), rate.motor_unit, rate.motor_unit,
             std::move(timing.unit), vehicle, units.unit, plant_.state()),
-      land_detector_(vehicle, the_case.flight->floor),
+      land_detector_(the_case, rate.motor_unit),
       event_queue_({}),
       battery_scales_(
           line<float>(the_case.flight->battery.value_or(BatteryFlight{}).timing, rate.motor_unit)),

@@ -1,21 +1,20 @@
-// vehicle_land_detected from the plant's true state: whether the vehicle rests on the floor.
+// vehicle_land_detected from the plant's true state, by the rules of PX4's land detector for
+// multicopters. models/README.md has the source of the numbers.
 //
-//     on the floor     the lowest point of the feet is less than 0.1 arm above z = 0
-//     at rest          on the floor, vertical speed and body rate small, low thrust commanded
-//     maybe_landed     at rest for 0.25 s
-//     landed           0.3 s later, if still at rest
+//     ground contact   low thrust, low vertical and horizontal speed
+//     maybe_landed     ground contact, minimal thrust, low body rate about x and y
+//     landed           maybe_landed
 //
-// Both become false with the first sample that is not at rest, with one exception: a disarmed
-// vehicle on the floor is landed at once, also while it moves. A flight that starts at rest on the
-// floor starts landed. Without a floor a vehicle never lands. models/README.md has the reasons for
-// the numbers.
+// A stage is reached when its conditions have held for a third of a second, and is lost at the
+// first sample at which one of them fails. Disarmed, the conditions of all stages hold. A flight
+// that starts on the floor starts landed.
 //
 // No allocation; one thread at a time.
 #pragma once
 
 #include <optional>
-#include <vector>
 
+#include "harness/casefile/case.hpp"
 #include "harness/core/frames.hpp"
 #include "harness/core/time.hpp"
 #include "harness/plant/plant.hpp"
@@ -35,29 +34,33 @@ double height_on_floor_m(const Vehicle& vehicle);
 
 class LandDetector {
  public:
-  static constexpr Nanoseconds maybe_landed_after{250'000'000};
-  static constexpr Nanoseconds landed_after{550'000'000};
-  static constexpr double height_limit_of_arm = 0.1;
-  static constexpr double vertical_speed_limit_m_s = 0.25;
-  static constexpr double rate_limit_rad_s = 0.35;  // about 20 deg/s; norm of the body rate
-  static constexpr double thrust_limit_of_hover = 0.3;
+  static constexpr Nanoseconds stage_time{1'000'000'000 / 3};  // of LNDMC_TRIG_TIME = 1 s
+  static constexpr double vertical_speed_limit_m_s = 0.25;     // LNDMC_Z_VEL_MAX
+  static constexpr double horizontal_speed_limit_m_s = 1.5;    // LNDMC_XY_VEL_MAX
+  static constexpr double rate_limit_deg_s = 20;               // LNDMC_ROT_MAX
+  static constexpr double rate_limit_factor_when_landed = 2.5;
+  static constexpr double thrust_min = 0.12;          // MPC_THR_MIN
+  static constexpr double low_thrust_of_range = 0.3;  // from MPC_THR_MIN to MPC_THR_HOVER
+  static constexpr double thrust_margin = 0.01;       // above MPC_MANTHR_MIN
 
-  // The vehicle is not kept.
-  LandDetector(const Vehicle& vehicle, bool floor);
+  // For a flight that bound_to_vehicle() made (flight.hpp). `rate` is that of the unit that
+  // commands the motors. The case is not kept.
+  LandDetector(const Case& the_case, const Rate& rate);
 
   // `thrust` is the commanded collective thrust, 0..1, positive upwards: the cascade's
-  // -vehicle_thrust_setpoint.xyz[2]. With NaN the vehicle is not at rest. REQUIRES: times do not
-  // decrease.
+  // -vehicle_thrust_setpoint.xyz[2]. Conditions on a number that is not finite do not hold.
+  // REQUIRES: times do not decrease.
   LandDetected sample(Nanoseconds now, const PlantState& state, float thrust, bool armed);
 
  private:
-  bool is_on_floor(const PlantState& state) const;
-  bool is_at_rest(const PlantState& state, float thrust) const;
+  using Since = std::optional<Nanoseconds>;  // the time from which on all conditions have held
 
-  bool floor_;
-  std::vector<Vector3> feet_m_;  // centres of their spheres, FRD, from the centre of mass
-  double foot_radius_m_, height_limit_m_, thrust_limit_;
-  std::optional<Nanoseconds> at_rest_since_ = -landed_after;  // at the start: at rest for long
+  bool touches(Nanoseconds now, const PlantState& state, double thrust) const;
+  bool is_still(Nanoseconds now, const PlantState& state, double thrust) const;
+
+  Sampler hover_thrust_, manual_thrust_min_;  // MPC_THR_HOVER, MPC_MANTHR_MIN
+  Since ground_contact_, maybe_landed_, landed_;
+  bool was_landed_;
 };
 
 }  // namespace attest

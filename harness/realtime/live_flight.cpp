@@ -53,8 +53,7 @@ LoopTiming timing_of(const LiveUnitRecord& unit) {
   return timing;
 }
 
-LivePlantPlan plan_of(const Case& scripted, const Rate& rate, const Vehicle& vehicle,
-                      std::size_t ticks) {
+LivePlantPlan plan_of(const Case& scripted, const Rate& rate, std::size_t ticks) {
   const Timeline timeline = timeline_of(scripted, rate);
   LivePlantPlan plan{physics_of(scripted, rate), timeline.duration, ticks, {}, {}, {}, {}};
   if (const auto& battery = scripted.flight->battery) {
@@ -62,7 +61,7 @@ LivePlantPlan plan_of(const Case& scripted, const Rate& rate, const Vehicle& veh
   }
   if (scripted.unit.on_estimate) plan.estimator = rate;
   if (scripted.attitude_loop && scripted.flight->floor) {
-    plan.land_detector.emplace(vehicle, true);
+    plan.land_detector.emplace(scripted, rate);
     plan.landing_times = task_times(land_detection(), timeline);
   }
   return plan;
@@ -108,8 +107,8 @@ struct Flyers {
                                                          *units.attitude_unit, setting, links)
                           : nullptr),
         plant_clock(origin, Wait{}),
-        plant(plant_task, plan_of(scripted, rate.motor_unit, vehicle, unit.live.deadlines()),
-              plant_clock, links) {
+        plant(plant_task, plan_of(scripted, rate.motor_unit, unit.live.deadlines()), plant_clock,
+              links) {
     links.flying = attitude_unit ? 2 : 1;
   }
 

@@ -1,7 +1,6 @@
 #include "harness/loop/land_detector.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -12,165 +11,158 @@ constexpr LandDetected in_flight{false, false}, maybe_landed{true, false}, lande
 
 constexpr Nanoseconds milliseconds(std::int64_t count) { return Nanoseconds(count * 1'000'000); }
 
+Case flight(bool on_floor) {
+  Case result;
+  result.duration = {2, Span::In::seconds};
+  result.flight.emplace();
+  result.flight->start.on_floor = on_floor;
+  result.parameters = {{"MPC_THR_HOVER", Constant{0.6}}, {"MPC_MANTHR_MIN", Constant{0.08}}};
+  return result;
+}
+
 class LandDetectorTest : public testing::Test {
  protected:
-  // The iris stands at 0.4 arm.
-  static PlantState at_height(double above_feet_of_arm) {
-    PlantState state;
-    state.position_m[2] = -(0.4 + above_feet_of_arm) * iris().arm_m();
-    return state;
+  LandDetected armed(std::int64_t ms, const PlantState& state, double thrust = 0) {
+    return detector_.sample(milliseconds(ms), state, static_cast<float>(thrust), true);
   }
-  static const Vehicle& iris() {
-    static const Vehicle vehicle = *read_vehicle(ATTEST_SOURCE_DIR "/models/iris.toml");
-    return vehicle;
+  LandDetected disarmed(std::int64_t ms, const PlantState& state, double thrust = 0) {
+    return detector_.sample(milliseconds(ms), state, static_cast<float>(thrust), false);
   }
-  static float thrust(double of_hover) {
-    return static_cast<float>(of_hover * iris().hover_thrust());
-  }
-  LandDetected armed(std::int64_t ms, const PlantState& state, double thrust_of_hover = 0.1) {
-    return detector_.sample(milliseconds(ms), state, thrust(thrust_of_hover), true);
-  }
-  // In flight at 0 ms, at rest from 100 ms on, landed from 650 ms on.
+  // In flight at 0 s, landed at 2 s.
   void land() {
-    armed(0, at_height(5));
-    armed(100, standing_);
-    ASSERT_EQ(armed(650, standing_), landed);
+    detector_ = LandDetector(flight(false), Rate::hz(1000));
+    for (std::int64_t ms = 0; ms <= 2000; ms += 20) armed(ms, standing_);
+    ASSERT_EQ(armed(2000, standing_), landed);
   }
-  // The sample ends the rest, and the hysteresis starts again.
-  void expect_end_of_rest(const PlantState& state, double thrust_of_hover = 0.1) {
+  // After land(), this sample gives `expected`.
+  void expect_after_landing(const PlantState& state, double thrust, const LandDetected& expected) {
     land();
-    EXPECT_EQ(armed(660, state, thrust_of_hover), in_flight);
-    EXPECT_EQ(armed(670, standing_), in_flight);
-    EXPECT_EQ(armed(670 + 549, standing_), maybe_landed);
-    EXPECT_EQ(armed(670 + 550, standing_), landed);
+    EXPECT_EQ(armed(2020, state, thrust), expected);
   }
-  void expect_rest(const PlantState& state, double thrust_of_hover = 0.1) {
-    land();
-    EXPECT_EQ(armed(660, state, thrust_of_hover), landed);
+  // A vehicle that comes to rest like this has landed after one second, or never.
+  bool lands(const PlantState& state, double thrust = 0) {
+    detector_ = LandDetector(flight(false), Rate::hz(1000));
+    for (std::int64_t ms = 0; ms < 1000; ms += 20) armed(ms, state, thrust);
+    const LandDetected after_1_s = armed(1020, state, thrust);
+    EXPECT_EQ(after_1_s.landed, armed(5000, state, thrust).landed);
+    return after_1_s.landed;
   }
 
-  const PlantState standing_ = at_height(0);
-  LandDetector detector_{iris(), true};
+  const PlantState standing_;
+  LandDetector detector_{flight(false), Rate::hz(1000)};
 };
 
-TEST_F(LandDetectorTest, LandsInTwoSteps) {
-  EXPECT_EQ(armed(0, at_height(5)), in_flight);
-  EXPECT_EQ(armed(100, standing_), in_flight);
-  EXPECT_EQ(armed(349, standing_), in_flight);
-  EXPECT_EQ(armed(350, standing_), maybe_landed);
-  EXPECT_EQ(armed(649, standing_), maybe_landed);
-  EXPECT_EQ(armed(650, standing_), landed);
-}
-
-TEST_F(LandDetectorTest, AStartAtRestIsLanded) {
-  EXPECT_EQ(armed(0, standing_), landed);
-  EXPECT_EQ(armed(1, standing_), landed);
-}
-
-TEST_F(LandDetectorTest, ThrustEndsTheRest) {
-  expect_end_of_rest(standing_, 0.31);
-  detector_ = LandDetector(iris(), true);
-  expect_rest(standing_, 0.29);
-}
-
-TEST_F(LandDetectorTest, ThrustThatIsNotANumberEndsTheRest) {
-  expect_end_of_rest(standing_, std::nan(""));
-}
-
-TEST_F(LandDetectorTest, HeightEndsTheRest) {
-  expect_end_of_rest(at_height(0.11));
-  detector_ = LandDetector(iris(), true);
-  expect_rest(at_height(0.09));
-}
-
-TEST_F(LandDetectorTest, VerticalSpeedEndsTheRest) {
-  PlantState state = standing_;
-  state.velocity_m_s = {5, 5, 0.24};
-  expect_rest(state);
-  detector_ = LandDetector(iris(), true);
-  state.velocity_m_s = {0, 0, -0.26};
-  expect_end_of_rest(state);
-}
-
-TEST_F(LandDetectorTest, BodyRateEndsTheRest) {
-  PlantState state = standing_;
-  state.rate_rad_s = {0.2, -0.2, 0.2};
-  expect_rest(state);
-  detector_ = LandDetector(iris(), true);
-  state.rate_rad_s = {0.21, 0.21, -0.21};
-  expect_end_of_rest(state);
-}
-
-// Rolled by 90 deg, the feet on the right are 0.132 m below the centre of mass, and their radius is
-// 0.05 arm.
-TEST_F(LandDetectorTest, TheLowestFootCounts) {
+PlantState moving(const Vector3& velocity_m_s, const Vector3& rate_rad_s = {}) {
   PlantState state;
-  state.attitude = {std::sqrt(0.5), std::sqrt(0.5), 0, 0};
-  const double arm = iris().arm_m();
-  state.position_m[2] = -(0.6 * 0.22 + 0.05 * arm + 0.09 * arm);
-  expect_rest(state);
-  detector_ = LandDetector(iris(), true);
-  state.position_m[2] -= 0.02 * arm;
-  expect_end_of_rest(state);
+  state.velocity_m_s = velocity_m_s;
+  state.rate_rad_s = rate_rad_s;
+  return state;
 }
 
-// Pitched up by 90 deg, the rear feet are 0.6 of 0.13 m below the centre of mass.
-TEST_F(LandDetectorTest, TheLowestFootCountsInPitch) {
-  PlantState state;
-  state.attitude = {std::sqrt(0.5), 0, std::sqrt(0.5), 0};
-  const double arm = iris().arm_m();
-  state.position_m[2] = -(0.6 * 0.13 + 0.05 * arm + 0.09 * arm);
-  expect_rest(state);
-  detector_ = LandDetector(iris(), true);
-  state.position_m[2] -= 0.02 * arm;
-  expect_end_of_rest(state);
-}
-
-TEST_F(LandDetectorTest, DisarmedOnTheFloorIsLandedAtOnce) {
-  const auto disarmed = [&](std::int64_t ms, PlantState state) {
-    state.velocity_m_s[2] = 1;
-    state.rate_rad_s[0] = 1;
-    return detector_.sample(milliseconds(ms), state, 0.9f, false);
-  };
-  EXPECT_EQ(armed(0, at_height(5)), in_flight);
-  EXPECT_EQ(disarmed(10, at_height(0.11)), in_flight);
-  EXPECT_EQ(disarmed(20, at_height(0.09)), landed);
-  EXPECT_EQ(armed(30, standing_), landed);  // arming alone does not end the rest
-  EXPECT_EQ(armed(40, standing_, 0.5), in_flight);
-}
-
-TEST_F(LandDetectorTest, WithoutAFloorAVehicleNeverLands) {
-  detector_ = LandDetector(iris(), false);
-  for (const bool is_armed : {true, false}) {
-    EXPECT_EQ(detector_.sample(milliseconds(0), standing_, 0, is_armed), in_flight);
-    EXPECT_EQ(detector_.sample(milliseconds(900), standing_, 0, is_armed), in_flight);
+// Each stage takes 333.3 ms. With samples every 20 ms the first is reached at 340 ms. The second
+// one begins then and is reached at 680 ms, the third at 1020 ms.
+TEST_F(LandDetectorTest, LandsInThreeStagesOfAThirdOfASecond) {
+  for (std::int64_t ms = 0; ms <= 1100; ms += 20) {
+    const LandDetected expected = ms < 680 ? in_flight : ms < 1020 ? maybe_landed : landed;
+    EXPECT_EQ(armed(ms, standing_), expected) << ms;
   }
 }
 
-TEST_F(LandDetectorTest, AStateThatIsNotFiniteIsNotAtRest) {
-  PlantState state = standing_;
-  state.position_m[2] = std::nan("");
-  expect_end_of_rest(state);
+TEST_F(LandDetectorTest, AStageThatIsLostTakesTheLaterOnesWithIt) {
+  land();
+  EXPECT_EQ(armed(2020, moving({0, 0, 1})), in_flight);
+  for (std::int64_t ms = 2040; ms <= 3100; ms += 20) {
+    const LandDetected expected = ms < 2720 ? in_flight : ms < 3060 ? maybe_landed : landed;
+    EXPECT_EQ(armed(ms, standing_), expected) << ms;
+  }
 }
 
-// The feet of the models are where the detector has them. A vehicle with other feet fails here.
+TEST_F(LandDetectorTest, AStartOnTheFloorIsLanded) {
+  EXPECT_EQ(armed(0, standing_), in_flight);
+  detector_ = LandDetector(flight(true), Rate::hz(1000));
+  EXPECT_EQ(armed(0, standing_), landed);
+  EXPECT_EQ(armed(20, standing_, 0.5), in_flight);
+}
+
+// The defaults of LNDMC_Z_VEL_MAX and LNDMC_XY_VEL_MAX: 0.25 and 1.5 m/s. 1.5 = length of
+// (0.9, 1.2).
+TEST_F(LandDetectorTest, VerticalAndHorizontalSpeedEndTheContact) {
+  EXPECT_TRUE(lands(moving({0.9, 1.19, 0})));
+  EXPECT_FALSE(lands(moving({0.9, -1.21, 0})));
+  EXPECT_TRUE(lands(moving({0, 0, 0.24})));
+  EXPECT_FALSE(lands(moving({0, 0, -0.26})));
+  expect_after_landing(moving({1.51, 0, 0}), 0, in_flight);
+}
+
+// 20 deg/s are 0.349 rad/s: the length of (0.2, 0.286). The limit of a landed vehicle is 2.5 times
+// that, 0.873 rad/s: the length of (0.5, 0.715).
+TEST_F(LandDetectorTest, RotationAboutXAndYIsLimitedAndMoreOfItWhenLanded) {
+  EXPECT_TRUE(lands(moving({}, {0.2, -0.284, 9})));
+  EXPECT_FALSE(lands(moving({}, {0.2, 0.288, 0})));
+  expect_after_landing(moving({}, {0.5, 0.713, 9}), 0, landed);
+  expect_after_landing(moving({}, {-0.5, 0.718, 0}), 0, in_flight);
+}
+
+// Contact needs a thrust of at most 0.12 + 0.3 (0.6 - 0.12) = 0.264, maybe_landed of at most
+// MPC_MANTHR_MIN + 0.01 = 0.09. Above 0.264 the stage of contact begins anew.
+TEST_F(LandDetectorTest, ThrustEndsContactAndMaybeLanded) {
+  EXPECT_TRUE(lands(standing_, 0.089));
+  EXPECT_FALSE(lands(standing_, 0.091));
+  const auto landed_again_680_ms_after = [&](double thrust) {
+    land();
+    EXPECT_EQ(armed(2020, standing_, thrust), in_flight);
+    for (std::int64_t ms = 2040; ms < 2720; ms += 20) armed(ms, standing_);
+    return armed(2720, standing_).landed;
+  };
+  EXPECT_TRUE(landed_again_680_ms_after(0.263));
+  EXPECT_FALSE(landed_again_680_ms_after(0.265));
+}
+
+TEST_F(LandDetectorTest, TheLimitsOfThrustAreThoseOfTheParametersAtThatTime) {
+  Case changing = flight(true);
+  changing.parameters = {{"MPC_MANTHR_MIN", Step{0.08, 0.2, {1, Span::In::seconds}}}};
+  detector_ = LandDetector(changing, Rate::hz(1000));
+  EXPECT_EQ(armed(1000, standing_, 0.209), landed);
+  detector_ = LandDetector(changing, Rate::hz(1000));
+  EXPECT_EQ(armed(980, standing_, 0.209), in_flight);
+}
+
+// So the three stages begin together.
+TEST_F(LandDetectorTest, DisarmedAllConditionsHold) {
+  const PlantState falling = moving({9, 9, 9}, {9, 9, 9});
+  for (std::int64_t ms = 0; ms < 340; ms += 20) EXPECT_EQ(disarmed(ms, falling, 1), in_flight);
+  EXPECT_EQ(disarmed(340, falling, 1), landed);
+  EXPECT_EQ(armed(360, standing_), landed);  // arming alone does not end it
+  EXPECT_EQ(armed(380, standing_, 0.5), in_flight);
+}
+
+TEST_F(LandDetectorTest, NumbersThatAreNotFiniteEndTheContact) {
+  const double nan = std::nan("");
+  expect_after_landing(standing_, nan, in_flight);
+  expect_after_landing(moving({nan, 0, 0}), 0, in_flight);
+  expect_after_landing(moving({0, 0, nan}), 0, in_flight);
+  expect_after_landing(moving({}, {nan, 0, 0}), 0, in_flight);
+}
+
+// The feet of the models are where height_on_floor_m() has them. A vehicle with other feet fails
+// here.
 class OfModel : public testing::TestWithParam<const char*> {};
 
 TEST_P(OfModel, LandsAfterAFallToTheFloor) {
   const auto model = *VehicleModel::load(ATTEST_SOURCE_DIR "/models", GetParam());
   const Vehicle& vehicle = model->vehicle();
   const auto plant = *model->make_plant(PlantKind::mujoco, {Rate::hz(1000), true});
-  const double standing_m = 0.4 * vehicle.arm_m();
+  const double standing_m = height_on_floor_m(vehicle);
+  EXPECT_NEAR(standing_m, 0.4 * vehicle.arm_m(), 1e-12);
   PlantState start;
   start.position_m[2] = -standing_m - 0.1;  // falls for 0.14 s
   plant->reset(start);
-  LandDetector detector(vehicle, true);
-  EXPECT_EQ(detector.sample(Nanoseconds(0), plant->state(), 0, true), in_flight);
+  LandDetector detector(flight(false), Rate::hz(1000));
   LandDetected detected;
-  for (std::int64_t ms = 1; ms <= 1500; ++ms) {
+  for (std::int64_t ms = 0; ms <= 2000; ++ms) {
     ASSERT_FALSE(plant->advance(milliseconds(ms)));
     detected = detector.sample(milliseconds(ms), plant->state(), 0, true);
-    if (ms < 600) {
+    if (ms < 1100) {
       EXPECT_NE(detected, landed) << ms;
     }
   }

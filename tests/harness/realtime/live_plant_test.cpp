@@ -23,8 +23,6 @@ class StillPlant final : public Plant {
   std::optional<Divergence> advance(Nanoseconds) override { return std::nullopt; }
   const PlantState& state() const override { return state_; }
 
-  void below_the_floor() { state_.position_m = {0, 0, 1}; }
-
  private:
   PlantState state_;
 };
@@ -34,7 +32,7 @@ class LivePlantTest : public testing::Test {
  protected:
   LivePlantRecord run() {
     LivePlantPlan plan{Rate::hz(1000), ms(8), 4, {}, estimator_, {}, landing_times_};
-    plan.land_detector.emplace(vehicle_, true);
+    plan.land_detector.emplace(case_, Rate::hz(1000));
     LivePlant live(task_, std::move(plan), clock_, links_);
     live.run();
     return live.take_record();
@@ -93,7 +91,7 @@ TEST_F(LivePlantTest, BothUnitsReceiveItsState) {
 // It starts at rest on the floor, and the command of 2 ms lifts it off.
 TEST_F(LivePlantTest, TheLandDetectorHasTimesOfItsOwn) {
   landing_times_ = {ms(0), ms(4)};
-  plant_.below_the_floor();
+  case_.flight->start.on_floor = true;
   std::vector<bool> landed;
   clock_.before_waiting = [&](Nanoseconds due) {
     if (due == ms(1)) links_.commands.write({0, us(500), {}, 0.9f, true});
