@@ -274,7 +274,7 @@ def header(options):
     yield b"ULog\x01\x12\x35" + struct.pack("<BQ", 1, 4000000) + message("B", bytes(40))
     yield key_value("I", "char[3] sys_name", b"PX4")
     if options.release != "0":
-        major, minor, patch = map(int, options.release.split("."))
+        major, minor, patch = map(int, [*options.release.split("."), 0][:3])
         release = struct.pack("<I", major << 24 | minor << 16 | patch << 8 | 0xFF)
         yield key_value("I", "uint32_t ver_sw_release", release)
     if options.rate_max:

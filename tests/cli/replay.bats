@@ -61,6 +61,10 @@ recorded() { ls "$SOURCE"/golden/recorded/*/*.csv | grep -v tailsitter; }
   run "$ATTEST" replay "$trace" --param MC_ROLL_P
   [ "$status" -eq 2 ]
   has "NAME=VALUE"
+  run "$ATTEST" replay "$SOURCE"/golden/recorded/px4-v1.18/opposite_250hz.attitude.csv \
+    --param MPC_HOLD_DZ=0.2
+  [ "$status" -eq 2 ]
+  has 'it is `MAN_DEADZONE` since px4-v1.17'
 }
 
 @test "a battery trace without a number of cells is of 3, and says so" {

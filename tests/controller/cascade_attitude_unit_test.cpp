@@ -257,7 +257,7 @@ TEST_P(CascadeAttitudeUnit, SticksThatTakeOverHoldTheHeading) {
 
 // NaN passes a clamp, so it is allowed.
 RC_GTEST_PROP(CascadeAttitudeLimits, HoldForAnySetpoint, ()) {
-  AttitudeUnit<float> unit(every_profile[*rc::gen::inRange<std::size_t>(0, 3)]);
+  AttitudeUnit<float> unit(every_profile[*rc::gen::inRange<std::size_t>(0, every_profile.size())]);
   attest_attitude_inputs in{};
   attest_attitude_outputs out{};
   in.vehicle_attitude.q[0] = 1.0f;

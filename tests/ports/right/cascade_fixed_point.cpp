@@ -128,6 +128,8 @@ struct AttitudeStep : AttitudeStepStages<Fixed> {
         Fixed(sticks.thrust_min),   Fixed(sticks.thrust_hover),    Fixed(sticks.thrust_max),
         sticks.throttle_curve,      sticks.yaws_at_lowest_throttle};
     to.spoolup_us = Fixed(from.spoolup_us);
+    to.model = {Fixed(from.model.natural_rad_s), Fixed(from.model.feed_forward),
+                Fixed(from.model.feed_forward_max_rad_s)};
     return to;
   }
 };
@@ -149,6 +151,27 @@ struct Sticks : StickStages<Fixed> {
   // "None" would become a number.
   static Fixed turned(Fixed angle, Fixed turn) {
     return is_finite(angle) ? StickStages<Fixed>::turned(angle, turn) : angle;
+  }
+};
+
+// The time between two setpoints is in microseconds, too.
+struct Model : ReferenceModelStages<Fixed> {
+  static Fixed elapsed(std::uint64_t elapsed_us) {
+    return Fixed::of_raw(static_cast<Fixed::Wide>(elapsed_us));
+  }
+
+  static ModelDecay<Fixed> decay(Fixed elapsed_us, const Gains& gains) {
+    const Fixed natural = gains.natural_rad_s;
+    const Fixed k = change(natural, elapsed_us);
+    const Fixed E = exp(-k);
+    return {E + k * E, change(E, elapsed_us), natural * (k * E), E - k * E};
+  }
+
+  static Vector turn(const Vector& error, const Vector& rate, const Vector& command,
+                     Fixed elapsed_us, const ModelDecay<Fixed>& left) {
+    const Vector commanded(change(command[0], elapsed_us), change(command[1], elapsed_us),
+                           change(command[2], elapsed_us));
+    return (error - left.error_of_error * error) + left.error_of_rate * rate + commanded;
   }
 };
 
@@ -180,6 +203,7 @@ struct AttitudePolicies {
   AttitudeStep step;
   Sticks sticks;
   AttitudeStages<Fixed> attitude;
+  Model model;
 };
 struct RatePolicies {
   RateStep step;

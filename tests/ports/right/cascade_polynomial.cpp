@@ -1,5 +1,5 @@
-// The cascade with sin, cos, asin, acos and atan2 as polynomials. The law is instantiated with a
-// scalar type that has these functions. Must pass at the numeric level.
+// The cascade with sin, cos, asin, acos, exp and atan2 as polynomials. The law is instantiated with
+// a scalar type that has these functions. Must pass at the numeric level.
 #include "controller/elementary/float_with.hpp"
 #include "tests/ports/cascade_port.hpp"
 #include "tests/ports/right/polynomial.hpp"
@@ -11,6 +11,7 @@ struct Polynomials {
   static float cos(float x) { return polynomial::cos(x); }
   static float asin(float x) { return polynomial::asin(x); }
   static float acos(float x) { return polynomial::acos(x); }
+  static float exp(float x) { return polynomial::exp(x); }
   static float atan2(float y, float x) { return polynomial::atan2(y, x); }
 };
 using Real = attest::elementary::FloatWith<Polynomials>;

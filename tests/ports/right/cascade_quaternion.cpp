@@ -76,11 +76,46 @@ struct SwingTwist : AttitudeStages<float> {
   }
 };
 
+// With matrices and unit vectors, and the share of the error that is gone instead of what is left.
+struct Model : ReferenceModelStages<float> {
+  static Vector world_z(const Q& q_WR) {
+    return rotation(q_WR).normalized().toRotationMatrix().row(2).transpose();
+  }
+
+  static Vector error(const Q& q_WR, const Q& q_WD) {
+    const Rotation e = rotation(q_WR).conjugate() * rotation(q_WD);
+    return 2 * imaginary_part(canonical(Q(e.w(), e.x(), e.y(), e.z())));
+  }
+
+  static ModelDecay<float> decay(float elapsed_s, const Gains& gains) {
+    const float k = gains.natural_rad_s * elapsed_s, E = std::exp(-k);
+    return {E + k * E, elapsed_s * E, gains.natural_rad_s * (k * E), E - k * E};
+  }
+
+  static Vector without_yaw(const Vector& rate, const Vector& z_R, float yaw_rate) {
+    if (!is_finite(yaw_rate) || !(std::abs(yaw_rate) > epsilon)) return rate;
+    return z_R.cross(rate).cross(z_R);
+  }
+
+  static Q turned(const Q& q_WR, const Vector& turn) {
+    const float angle = turn.norm();
+    const float sinc = angle < 1e-6f ? 0.5f : std::sin(0.5f * angle) / angle;
+    const Rotation whole = rotation(q_WR) * Rotation(std::cos(0.5f * angle), turn[0] * sinc,
+                                                     turn[1] * sinc, turn[2] * sinc);
+    return unit(Q(whole.w(), whole.x(), whole.y(), whole.z()));
+  }
+
+  static Vector in_body(const Q& q_WB, const Q& q_WR, const Vector& rate) {
+    return rotation(q_WB).normalized().conjugate() * (rotation(q_WR) * rate);
+  }
+};
+
 }  // namespace
 
 // The law's composition of stages passes quaternions in world axes. This port has none.
 template <>
-Quaternion<float> attest::cascade::AttitudeLaw<float, SwingTwist>::error(const Q& q_WB) const {
+Quaternion<float> attest::cascade::AttitudeLaw<float, SwingTwist, Model>::error(
+    const Q& q_WB) const {
   const float norm = std::sqrt(squared_norm(q_WB));
   const Rotation from_body = rotation(q_WB).conjugate() * rotation(q_WD_);
   const Q whole{from_body.w(), from_body.x(), from_body.y(), from_body.z()};
@@ -161,6 +196,7 @@ struct AttitudePolicies {
   AttitudeStepStages<float> step;
   ClosedSticks sticks;
   SwingTwist attitude;
+  Model model;
 };
 struct RatePolicies {
   RateStepStages<float> step;

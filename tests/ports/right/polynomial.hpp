@@ -1,5 +1,6 @@
-// Trigonometry in polynomials, for a processor without a mathematical library. Before rounding they
-// are right to 2e-7; with the rounding of float, to 4.4e-7 (measured on 4 million arguments).
+// Elementary functions in polynomials, for a processor without a mathematical library. Before
+// rounding they are right to 2e-7; with the rounding of float, to 4.4e-7 (measured on 4 million
+// arguments).
 //
 // NaN and arguments outside of the domain give NaN, as in the C library.
 #pragma once
@@ -70,5 +71,18 @@ inline float acos_positive(float x) {
 }
 inline float acos(float x) { return x < 0 ? pi - acos_positive(-x) : acos_positive(x); }
 inline float asin(float x) { return std::copysign(pi / 2 - acos_positive(std::abs(x)), x); }
+
+// 2^n times the series to r^6, for |r| <= ln 2 / 2: the term left out is below 2e-7. ln 2 is
+// subtracted in two parts, of which the first has 12 bits.
+inline float exp(float x) {
+  constexpr float turns_each = 1.44269504f, ln2_high = 0.693115234f, ln2_low = 3.19461833e-5f;
+  if (std::isnan(x)) return x;
+  if (x < -104) return 0;
+  if (x > 89) return std::numeric_limits<float>::infinity();
+  const float n = std::nearbyint(x * turns_each);
+  const float r = (x - n * ln2_high) - n * ln2_low;
+  const float series = 1 + r * (1 + r / 2 * (1 + r / 3 * (1 + r / 4 * (1 + r / 5 * (1 + r / 6)))));
+  return std::ldexp(series, static_cast<int>(n));
+}
 
 }  // namespace polynomial
