@@ -2,9 +2,10 @@
 /*
  * attitude.h - the attitude unit: attitude to body rates.
  *
- *     attitude_unit.c  the table of functions, the parameters, and one step
- *     attitude_law.c   attitude error to rates, without topics or time
- *     sticks.c         stabilized mode: sticks to an attitude setpoint
+ *     attitude_unit.c    the table of functions, the parameters, and one step
+ *     attitude_law.c     attitude error to rates, without topics or time
+ *     reference_model.c  v1.18: the attitude that the law follows, and its rates
+ *     sticks.c           stabilized mode: sticks to an attitude setpoint
  *
  * World is NED, body is FRD, rates are [rad/s] about body x, y, z. Everything is binary32 and is
  * evaluated as written: compile with -ffp-contract=off and without -ffast-math.
@@ -17,21 +18,26 @@
 
 #include "port.h"
 #include "quaternion.h"
+#include "reference_model.h"
 #include "scalar.h"
 
 /* ---- the attitude law ------------------------------------------------------------------------*/
 
 typedef struct attitude_law {
-  float p[3];        /* [1/s] roll, pitch, yaw; yaw is divided by its weight */
-  float yaw_weight;  /* [0..1] share of the yaw error that is corrected */
-  float rate_max[3]; /* [rad/s] */
-  quat q_d;          /* desired attitude */
-  float yaw_rate;    /* [rad/s] about world z, fed forward if finite */
+  float p[3];         /* [1/s] roll, pitch, yaw; yaw is divided by its weight */
+  float yaw_weight;   /* [0..1] share of the yaw error that is corrected */
+  float rate_max[3];  /* [rad/s] */
+  bool has_reference; /* otherwise q_d and yaw_rate are those of the setpoint */
+  quat q_d;           /* desired attitude; that of the reference model, if there is one */
+  float yaw_rate;     /* [rad/s] about world z, fed forward if finite */
+  reference_model reference;
 } attitude_law;
 
 void attitude_law_set_gains(attitude_law* law, const float p[3], float yaw_weight,
                             const float rate_max_deg[3]);
-void attitude_law_set_setpoint(attitude_law* law, quat q_d, float yaw_rate);
+
+/* `elapsed` [s] is the time since the previous setpoint, 0 for the first one. */
+void attitude_law_set_setpoint(attitude_law* law, quat q_d, float yaw_rate, float elapsed);
 
 /* Turns the setpoint by `delta`, by which the estimator turned its attitude: the error stays. */
 void attitude_law_adapt(attitude_law* law, quat delta);
@@ -52,6 +58,7 @@ typedef struct attitude_parameters {
   float throttle_min, throttle_hover; /* thrust [0..1] */
   float throttle_max, throttle_curve; /* thrust [0..1]; 0, 1 or 2 */
   float airmode, spoolup_time;        /* 0, 1 or 2; [s] */
+  reference_parameters reference;
 } attitude_parameters;
 
 typedef struct attitude_setpoint {
@@ -74,6 +81,7 @@ typedef struct stick_state {
   lowpass yaw_error; /* estimated minus unaided heading [rad] */
   float yaw_ref;     /* estimated minus unaided heading when last steady [rad] */
   float correction;  /* [rad] */
+  bool lost;         /* no unaided heading in the last step with sticks */
   bool converging;   /* the estimate of the heading changes without a turn of the vehicle */
 
   /* Without yaw_lock. */

@@ -18,9 +18,15 @@ void attitude_law_set_gains(attitude_law* law, const float p[3], float yaw_weigh
   if (law->yaw_weight > 1e-4f) law->p[2] = law->p[2] / law->yaw_weight;
 }
 
-void attitude_law_set_setpoint(attitude_law* law, quat q_d, float yaw_rate) {
-  law->q_d = quat_unit(q_d);
-  law->yaw_rate = yaw_rate;
+void attitude_law_set_setpoint(attitude_law* law, quat q_d, float yaw_rate, float elapsed) {
+  const quat given = quat_unit(q_d);
+  if (law->has_reference && elapsed > 0.0f) {
+    law->q_d = reference_model_move(&law->reference, law->q_d, given, yaw_rate, elapsed);
+  } else {
+    law->q_d = given;
+    law->yaw_rate = yaw_rate;
+    reference_model_stop(&law->reference);
+  }
 }
 
 void attitude_law_adapt(attitude_law* law, quat delta) {
@@ -48,6 +54,14 @@ static quat target(const attitude_law* law, quat q) {
   return quat_multiply(reduced, yaw);
 }
 
+static void feed_yaw_rate(const attitude_law* law, quat inverse, float rates[3]) {
+  if (!isfinite(law->yaw_rate)) return;
+  const vec3 world_z = quat_z_axis(inverse); /* in body axes */
+  rates[0] = rates[0] + world_z.x * law->yaw_rate;
+  rates[1] = rates[1] + world_z.y * law->yaw_rate;
+  rates[2] = rates[2] + world_z.z * law->yaw_rate;
+}
+
 void attitude_law_rates(const attitude_law* law, quat q, float rates[3]) {
   const quat inverse = quat_inverse(q);
   const quat e = quat_canonical(quat_multiply(inverse, target(law, q)));
@@ -55,11 +69,10 @@ void attitude_law_rates(const attitude_law* law, quat q, float rates[3]) {
   rates[1] = (e.y * 2.0f) * law->p[1];
   rates[2] = (e.z * 2.0f) * law->p[2];
 
-  if (isfinite(law->yaw_rate)) {
-    const vec3 world_z = quat_z_axis(inverse); /* in body axes */
-    rates[0] = rates[0] + world_z.x * law->yaw_rate;
-    rates[1] = rates[1] + world_z.y * law->yaw_rate;
-    rates[2] = rates[2] + world_z.z * law->yaw_rate;
+  if (law->has_reference) {
+    reference_model_feed_forward(&law->reference, quat_multiply(inverse, law->q_d), rates);
+  } else {
+    feed_yaw_rate(law, inverse, rates);
   }
   for (int i = 0; i < 3; i++) rates[i] = clamp(rates[i], -law->rate_max[i], law->rate_max[i]);
 }

@@ -10,8 +10,6 @@
 #define AT(field) offsetof(attitude_parameters, field)
 
 static const parameter table[] = {
-    {"MC_ROLL_P", AT(p[0]), SAME(6.5f)},
-    {"MC_PITCH_P", AT(p[1]), SAME(6.5f)},
     {"MC_YAW_P", AT(p[2]), SAME(2.8f)},
     {"MC_YAW_WEIGHT", AT(yaw_weight), SAME(0.4f)},
     {"MC_ROLLRATE_MAX", AT(rate_max[0]), SAME(220.0f)},
@@ -25,17 +23,24 @@ static const parameter table[] = {
     {"MPC_THR_HOVER", AT(throttle_hover), SAME(0.5f)},
     {"MPC_THR_MAX", AT(throttle_max), SAME(1.0f)},
     {"MPC_THR_CURVE", AT(throttle_curve), SAME(0.0f)},
-    /* Columns: px4-v1.14.4, px4-v1.15.4, px4-v1.16.0. */
-    {"COM_SPOOLUP_TIME", AT(spoolup_time), {ABSENT, 1.0f, 1.0f}},
-    {"MPC_MAN_Y_TAU", AT(yaw_tau), {ABSENT, ABSENT, 0.08f}},
-    {"MPC_YAW_EXPO", AT(yaw_expo), {ABSENT, ABSENT, 0.6f}},
-    {"MPC_HOLD_DZ", AT(hold_deadzone), {ABSENT, ABSENT, 0.1f}},
+    /* Columns: px4-v1.14.4, px4-v1.15.4, px4-v1.16.0, px4-v1.17, px4-v1.18. */
+    {"MC_ROLL_P", AT(p[0]), {6.5f, 6.5f, 6.5f, 4.0f, 4.0f}},
+    {"MC_PITCH_P", AT(p[1]), {6.5f, 6.5f, 6.5f, 4.0f, 4.0f}},
+    {"COM_SPOOLUP_TIME", AT(spoolup_time), {ABSENT, 1.0f, 1.0f, 1.0f, 1.0f}},
+    {"MPC_MAN_Y_TAU", AT(yaw_tau), {ABSENT, ABSENT, 0.08f, 0.08f, 0.08f}},
+    {"MPC_YAW_EXPO", AT(yaw_expo), {ABSENT, ABSENT, 0.6f, ABSENT, ABSENT}},
+    {"MPC_HOLD_DZ", AT(hold_deadzone), {ABSENT, ABSENT, 0.1f, ABSENT, ABSENT}},
+    {"MAN_DEADZONE", AT(hold_deadzone), {ABSENT, ABSENT, ABSENT, 0.1f, 0.1f}},
+    {"MC_REF_W_N", AT(reference.frequency), {ABSENT, ABSENT, ABSENT, ABSENT, 50.0f}},
+    {"MC_REF_FF", AT(reference.feed_forward), {ABSENT, ABSENT, ABSENT, ABSENT, 0.0f}},
+    {"MC_REF_FF_MAX", AT(reference.feed_forward_max), {ABSENT, ABSENT, ABSENT, ABSENT, 100.0f}},
 };
 enum { TABLE_ROWS = sizeof table / sizeof table[0] };
 
 static void read_parameters(attitude_unit* u) {
   const attitude_parameters* p = &u->parameters;
   attitude_law_set_gains(&u->law, p->p, p->yaw_weight, p->rate_max);
+  reference_model_set_parameters(&u->law.reference, &p->reference);
   sticks_read_parameters(u);
 }
 
@@ -88,7 +93,9 @@ static void latch_topics(attitude_unit* u, const attest_attitude_inputs* in) {
     u->landed = in->vehicle_land_detected.landed != 0;
   }
   if (in->updated & ATTEST_ATTITUDE_UPDATED_VEHICLE_LOCAL_POSITION) {
-    u->heading_good = in->vehicle_local_position.heading_good_for_control != 0;
+    if (!u->profile->ignores_heading_good) {
+      u->heading_good = in->vehicle_local_position.heading_good_for_control != 0;
+    }
     if (u->profile->yaw_lock) u->unaided_heading = in->vehicle_local_position.unaided_heading;
   }
 }
@@ -96,7 +103,9 @@ static void latch_topics(attitude_unit* u, const attest_attitude_inputs* in) {
 /* ---- setpoint --------------------------------------------------------------------------------*/
 
 static void use_sample(attitude_unit* u) {
-  attitude_law_set_setpoint(&u->law, u->sample.q_d, u->sample.yaw_rate);
+  const bool first = u->setpoint_time == 0;
+  const float elapsed = first ? 0.0f : seconds(u->setpoint_time, u->sample.timestamp);
+  attitude_law_set_setpoint(&u->law, u->sample.q_d, u->sample.yaw_rate, elapsed);
   memcpy(u->thrust, u->sample.thrust, sizeof u->thrust);
   u->setpoint_time = u->sample.timestamp;
 }
@@ -133,17 +142,18 @@ static void publish_setpoint(attitude_unit* u, const attitude_setpoint* sp,
 /* ---- one step --------------------------------------------------------------------------------*/
 
 /* The newest sample counts, whether or not it is new in this step. */
-static bool autotune_active(const attest_attitude_inputs* in) {
+static bool autotune_active(const attitude_unit* u, const attest_attitude_inputs* in) {
+  const uint64_t age = in->timestamp - in->autotune_attitude_control_status.timestamp; /* [us] */
+  const uint8_t* states = u->profile->autotune_states;
   const uint8_t state = in->autotune_attitude_control_status.state;
-  return (state == 2 || state == 4 || state == 6 || state == 10) &&
-         in->timestamp - in->autotune_attitude_control_status.timestamp < 1000000;
+  return age < 1000000 && memchr(states, state, sizeof u->profile->autotune_states) != NULL;
 }
 
 static void publish_rates(const attitude_unit* u, quat q, const attest_attitude_inputs* in,
                           attest_attitude_outputs* out) {
   float rates[3];
   attitude_law_rates(&u->law, q, rates);
-  if (autotune_active(in)) { /* after the limit of the law */
+  if (autotune_active(u, in)) { /* after the limit of the law */
     for (int i = 0; i < 3; i++) rates[i] += in->autotune_attitude_control_status.rate_sp[i];
   }
   out->vehicle_rates_setpoint.roll = rates[0];
@@ -201,6 +211,7 @@ static void* create(const char* profile_name) {
   u->heading_good = true;
   u->unaided_heading = NAN;
   u->hover_estimate = NAN;
+  u->law.has_reference = selected->reference_model;
   u->law.q_d = (quat){1.0f, 0.0f, 0.0f, 0.0f};
   u->sticks.restart_yaw = true;
   parameters_initialise(table, TABLE_ROWS, selected, &u->parameters);

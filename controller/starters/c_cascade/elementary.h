@@ -16,6 +16,7 @@ static inline float law_sin(float x) { return attest_sinf(x); }
 static inline float law_cos(float x) { return attest_cosf(x); }
 static inline float law_asin(float x) { return attest_asinf(x); }
 static inline float law_acos(float x) { return attest_acosf(x); }
+static inline float law_exp(float x) { return attest_expf(x); }
 static inline float law_atan2(float y, float x) { return attest_atan2f(y, x); }
 #else
 #include <math.h>
@@ -23,6 +24,7 @@ static inline float law_sin(float x) { return (float)sin((double)x); }
 static inline float law_cos(float x) { return (float)cos((double)x); }
 static inline float law_asin(float x) { return (float)asin((double)x); }
 static inline float law_acos(float x) { return (float)acos((double)x); }
+static inline float law_exp(float x) { return (float)exp((double)x); }
 static inline float law_atan2(float y, float x) { return (float)atan2((double)y, (double)x); }
 #endif
 

@@ -31,6 +31,10 @@ static inline float length(vec3 v) { return sqrtf(dot(v, v)); }
 
 static inline vec3 scale(vec3 v, float s) { return (vec3){v.x * s, v.y * s, v.z * s}; }
 
+static inline vec3 add(vec3 a, vec3 b) { return (vec3){a.x + b.x, a.y + b.y, a.z + b.z}; }
+
+static inline vec3 subtract(vec3 a, vec3 b) { return (vec3){a.x - b.x, a.y - b.y, a.z - b.z}; }
+
 static inline vec3 cross(vec3 a, vec3 b) {
   return (vec3){a.y * b.z - a.z * b.y, -a.x * b.z + a.z * b.x, a.x * b.y - a.y * b.x};
 }
@@ -70,6 +74,14 @@ static inline quat quat_multiply(quat q, quat p) {
 static inline quat quat_inverse(quat q) {
   const float n = quat_dot(q, q);
   return (quat){q.w / n, -q.x / n, -q.y / n, -q.z / n};
+}
+
+static inline vec3 quat_imaginary(quat q) { return (vec3){q.x, q.y, q.z}; }
+
+/* The vector v, turned by q. */
+static inline vec3 quat_rotate(quat q, vec3 v) {
+  const quat pure = {0.0f, v.x, v.y, v.z};
+  return quat_imaginary(quat_multiply(quat_multiply(q, pure), quat_inverse(q)));
 }
 
 /* q or -q, which are the same rotation: the one whose first component that is not almost 0 is

@@ -72,15 +72,17 @@ static const parameter table[] = {
     {"MC_RR_INT_LIM", offsetof(parameters, int_limit[0]), SAME(0.3f)},
     {"MC_PR_INT_LIM", offsetof(parameters, int_limit[1]), SAME(0.3f)},
     {"MC_YR_INT_LIM", offsetof(parameters, int_limit[2]), SAME(0.3f)},
-    /* Columns: px4-v1.14.4, px4-v1.15.4, px4-v1.16.0. */
-    {"MC_ACRO_R_MAX", offsetof(parameters, acro_max[0]), {720.0f, 100.0f, 100.0f}},
-    {"MC_ACRO_P_MAX", offsetof(parameters, acro_max[1]), {720.0f, 100.0f, 100.0f}},
-    {"MC_ACRO_Y_MAX", offsetof(parameters, acro_max[2]), {540.0f, 100.0f, 100.0f}},
-    {"MC_ACRO_EXPO", offsetof(parameters, acro_expo), {0.69f, 0.0f, 0.0f}},
-    {"MC_ACRO_EXPO_Y", offsetof(parameters, acro_expo_yaw), {0.69f, 0.0f, 0.0f}},
-    {"MC_ACRO_SUPEXPO", offsetof(parameters, acro_superexpo), {0.7f, 0.0f, 0.0f}},
-    {"MC_ACRO_SUPEXPOY", offsetof(parameters, acro_superexpo_yaw), {0.7f, 0.0f, 0.0f}},
-    {"MC_YAW_TQ_CUTOFF", offsetof(parameters, yaw_torque_cutoff), {ABSENT, ABSENT, 2.0f}},
+    /* Columns: px4-v1.14.4, px4-v1.15.4, px4-v1.16.0, px4-v1.17, px4-v1.18. */
+    {"MC_ACRO_R_MAX", offsetof(parameters, acro_max[0]), {720.0f, 100.0f, 100.0f, 100.0f, 100.0f}},
+    {"MC_ACRO_P_MAX", offsetof(parameters, acro_max[1]), {720.0f, 100.0f, 100.0f, 100.0f, 100.0f}},
+    {"MC_ACRO_Y_MAX", offsetof(parameters, acro_max[2]), {540.0f, 100.0f, 100.0f, 100.0f, 100.0f}},
+    {"MC_ACRO_EXPO", offsetof(parameters, acro_expo), {0.69f, 0.0f, 0.0f, 0.0f, 0.0f}},
+    {"MC_ACRO_EXPO_Y", offsetof(parameters, acro_expo_yaw), {0.69f, 0.0f, 0.0f, 0.0f, 0.0f}},
+    {"MC_ACRO_SUPEXPO", offsetof(parameters, acro_superexpo), {0.7f, 0.0f, 0.0f, 0.0f, 0.0f}},
+    {"MC_ACRO_SUPEXPOY", offsetof(parameters, acro_superexpo_yaw), {0.7f, 0.0f, 0.0f, 0.0f, 0.0f}},
+    {"MC_YAW_TQ_CUTOFF",
+     offsetof(parameters, yaw_torque_cutoff),
+     {ABSENT, ABSENT, 2.0f, 2.0f, 2.0f}},
     {"MC_BAT_SCALE_EN", offsetof(parameters, battery_scale_enabled), SAME(0.0f)},
 };
 enum { TABLE_ROWS = sizeof table / sizeof table[0] };

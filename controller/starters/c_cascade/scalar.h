@@ -30,10 +30,13 @@ static inline float wrap(float x) {
   return x - 6.28318548f * floorf((x - lo) * 0.159154937f);
 }
 
-/* Seconds from `from` to `to` [us], limited to lo .. hi. The difference is unsigned, so that time
- * which goes back gives `hi`. */
+/* Seconds from `from` to `to` [us]. The difference is unsigned, so that time which goes back gives
+ * a very large value. */
+static inline float seconds(uint64_t from, uint64_t to) { return (float)(to - from) * 1e-6f; }
+
+/* The same, limited to lo .. hi. */
 static inline float seconds_between(uint64_t from, uint64_t to, float lo, float hi) {
-  return clamp((float)(to - from) * 1e-6f, lo, hi);
+  return clamp(seconds(from, to), lo, hi);
 }
 
 /* ---- filters ---------------------------------------------------------------------------------*/

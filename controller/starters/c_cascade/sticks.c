@@ -12,12 +12,10 @@ static bool lacks_yaw_authority(const attitude_unit* u) {
 /* ---- yaw -------------------------------------------------------------------------------------*/
 
 /* While the estimate of the heading converges, it changes although the vehicle does not turn. The
- * unaided heading, from the gyros alone, shows this. Returns the change of the estimate since it
- * was last steady [rad]. The yaw setpoint moves by this change. */
-static float yaw_correction(attitude_unit* u, float heading, float dt) {
-  if (!isfinite(u->unaided_heading)) return 0.0f;
-  stick_state* s = &u->sticks;
-  const float error = wrap(heading - u->unaided_heading);
+ * unaided heading, from the gyros alone, shows this. `error` is the estimated minus the unaided
+ * heading. Returns its change since it was last steady [rad]. The yaw setpoint moves by this
+ * change. */
+static float yaw_correction(stick_state* s, float error, float dt) {
   const float change = wrap(error - s->yaw_error.state);
   lowpass_update(&s->yaw_error, 1.0f, dt, error);
   const bool was_converging = s->converging;
@@ -29,17 +27,48 @@ static float yaw_correction(attitude_unit* u, float heading, float dt) {
   return wrap(error - s->yaw_ref);
 }
 
+/* The unaided heading is back. How the two headings changed without it is not known. */
+static void restart_correction(stick_state* s, float error) {
+  s->yaw_error.state = error;
+  s->yaw_ref = error;
+  s->correction = 0.0f;
+  s->converging = false;
+  s->yaw_sp = NAN;
+}
+
+static void correct_yaw(attitude_unit* u, float heading, float dt) {
+  stick_state* s = &u->sticks;
+  const bool was_lost = s->lost;
+  s->lost = !isfinite(u->unaided_heading);
+  if (s->lost) {
+    if (!u->profile->keeps_lost_correction) s->correction = 0.0f;
+    return;
+  }
+  const float error = wrap(heading - u->unaided_heading);
+  if (was_lost && u->profile->keeps_lost_correction) {
+    restart_correction(s, error);
+  } else {
+    s->correction = yaw_correction(s, error, dt);
+  }
+}
+
+/* The yaw stick after its curve, [-1..1]. */
+static float yaw_stick(const attitude_unit* u) {
+  const attitude_parameters* p = &u->parameters;
+  const float share = u->profile->yaw_expo_fixed ? 0.6f : p->yaw_expo;
+  return expo(deadzone(u->yaw, p->hold_deadzone), share);
+}
+
 /* A centred yaw stick locks the heading. Returns the yaw of the setpoint. */
 static float lock_yaw(attitude_unit* u, float heading, float dt, float* yaw_rate) {
-  const attitude_parameters* p = &u->parameters;
   stick_state* s = &u->sticks;
   if (lacks_yaw_authority(u) || !u->heading_good) s->yaw_sp = NAN;
 
   const float old_correction = s->correction;
-  s->correction = yaw_correction(u, heading, dt);
+  correct_yaw(u, heading, dt);
 
-  const float stick = expo(deadzone(u->yaw, p->hold_deadzone), p->yaw_expo);
-  *yaw_rate = lowpass_update(&s->yaw_rate, p->yaw_tau, dt, stick * u->stick_yaw_max);
+  const float wanted = yaw_stick(u) * u->stick_yaw_max;
+  *yaw_rate = lowpass_update(&s->yaw_rate, u->parameters.yaw_tau, dt, wanted);
 
   if (fabsf(*yaw_rate) > FLT_EPSILON) {
     s->yaw_sp = NAN;
