@@ -8,6 +8,7 @@ from typing import NamedTuple, Tuple
 
 from binary32 import ONE, TWO, ZERO, Binary32, acos, asin, cos, is_finite, sin
 from parameters import AXES
+from reference_model import ReferenceModel
 from rotation import (
     IDENTITY,
     added,
@@ -45,7 +46,8 @@ class AttitudeLaw:
         self.gains = (p["MC_ROLL_P"], p["MC_PITCH_P"], yaw_gain)
         self.limits = tuple(radians(p[f"MC_{axis}RATE_MAX"]) for axis in AXES)
 
-    def follow(self, setpoint):
+    def follow(self, setpoint, elapsed):
+        """Takes a setpoint, `elapsed` seconds after the previous one; None for the first one."""
         self.q_d = unit(setpoint.q_d)
         self.yaw_rate = setpoint.yaw_rate
 
@@ -57,9 +59,13 @@ class AttitudeLaw:
         """The rates setpoint (roll, pitch, yaw) in the body [rad/s] for the attitude q."""
         error = canonical(product(inverse(q), self._weighted_setpoint(q)))
         rates = tuple(part * TWO * gain for part, gain in zip(error[1:], self.gains))
-        if is_finite(self.yaw_rate):
-            rates = added(rates, times(z_axis(inverse(q)), self.yaw_rate))
+        rates = self._fed_forward(rates, q)
         return tuple(clamp(rate, -limit, limit) for rate, limit in zip(rates, self.limits))
+
+    def _fed_forward(self, rates, q):
+        if not is_finite(self.yaw_rate):
+            return rates
+        return added(rates, times(z_axis(inverse(q)), self.yaw_rate))
 
     def _weighted_setpoint(self, q):
         """The attitude with the thrust axis of q_d, and a part of the turn to its yaw."""
@@ -74,3 +80,26 @@ class AttitudeLaw:
         weight = self.yaw_weight
         part = (cos(weight * acos(cosine)), ZERO, ZERO, sin(weight * asin(sine)))
         return product(tilted, part)
+
+
+class AttitudeLawOfV118(AttitudeLaw):
+    """q_d is the attitude of the reference model, which follows the setpoint."""
+
+    def __init__(self):
+        super().__init__()
+        self.model = ReferenceModel()
+
+    def read(self, parameters):
+        super().read(parameters)
+        self.model.read(parameters)
+
+    def follow(self, setpoint, elapsed):
+        target = unit(setpoint.q_d)
+        if elapsed is None:
+            self.q_d = target
+            self.model.stop()
+        else:
+            self.q_d = self.model.moved(self.q_d, target, setpoint.yaw_rate, elapsed)
+
+    def _fed_forward(self, rates, q):
+        return self.model.fed_forward(rates, product(inverse(q), self.q_d))

@@ -1,14 +1,23 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The attitude unit: attitude to rates setpoint, PX4 v1.14 to v1.16 mc_att_control.
+"""The attitude unit: attitude to rates setpoint, PX4 v1.14 to v1.18 mc_att_control.
 
 Attitudes rotate the body (FRD) into the world (NED). Rates are in rad/s about the body axes x, y,
 z. `attest list --parameters` has the unit of each parameter.
 """
 
-from attitude_law import AttitudeLaw, AttitudeSetpoint
+from attitude_law import AttitudeLaw, AttitudeLawOfV118, AttitudeSetpoint
 from binary32 import NAN, ZERO, Binary32, is_finite
 from messages import PARAMETER_UPDATE, AttitudeInputs, AttitudeOutputs
-from parameters import PX4_V114, PX4_V115, PX4_V116, Parameters
+from parameters import (
+    PX4_V114,
+    PX4_V115,
+    PX4_V116,
+    PX4_V117,
+    PX4_V118,
+    SINCE_V116,
+    SINCE_V117,
+    Parameters,
+)
 from rotation import added
 from scalar import clamp, microseconds, seconds
 from sticks import Sticks, Vehicle
@@ -18,7 +27,8 @@ LONGEST_DT = Binary32(0.02)
 LEAST_HOVER_THRUST = Binary32(0.05)
 MOST_HOVER_THRUST = Binary32(0.9)
 US_PER_S = Binary32(1e6)
-AUTOTUNE_STATES = (2, 4, 6, 10)  # those that move the vehicle
+AUTOTUNE_STATES = (3, 6, 9, 13)  # those that move the vehicle: roll, pitch, yaw, test
+AUTOTUNE_STATES_BEFORE_V117 = (2, 4, 6, 10)
 AUTOTUNE_LASTS_US = 1_000_000
 
 _DEFAULTS = {
@@ -39,11 +49,15 @@ _DEFAULTS = {
     "MC_AIRMODE": 0,
 }
 _SINCE_V115 = {"COM_SPOOLUP_TIME": 1.0}
-_SINCE_V116 = {"MPC_HOLD_DZ": 0.1, "MPC_YAW_EXPO": 0.6, "MPC_MAN_Y_TAU": 0.08}
+_SINCE_V116 = {**_SINCE_V115, "MPC_MAN_Y_TAU": 0.08}
+_SINCE_V117 = {**_SINCE_V116, "MC_ROLL_P": 4.0, "MC_PITCH_P": 4.0, "MAN_DEADZONE": 0.1}
+_SINCE_V118 = {**_SINCE_V117, "MC_REF_W_N": 50.0, "MC_REF_FF": 0.0, "MC_REF_FF_MAX": 100.0}
 _DEFAULTS_OF = {
     PX4_V114: _DEFAULTS,
     PX4_V115: {**_DEFAULTS, **_SINCE_V115},
-    PX4_V116: {**_DEFAULTS, **_SINCE_V115, **_SINCE_V116},
+    PX4_V116: {**_DEFAULTS, **_SINCE_V116, "MPC_HOLD_DZ": 0.1, "MPC_YAW_EXPO": 0.6},
+    PX4_V117: {**_DEFAULTS, **_SINCE_V117},
+    PX4_V118: {**_DEFAULTS, **_SINCE_V118},
 }
 
 
@@ -58,7 +72,7 @@ class AttitudeUnit:
         self.profile = profile
         self.parameters = Parameters(_DEFAULTS_OF[profile])
         self.values = None  # of the parameters, from the first step on
-        self.law = AttitudeLaw()
+        self.law = AttitudeLawOfV118() if profile == PX4_V118 else AttitudeLaw()
         self.sticks = Sticks(profile)
         self.vehicle = Vehicle()
         self.thrust = (ZERO, ZERO, ZERO)
@@ -88,7 +102,7 @@ class AttitudeUnit:
         if uses_sticks:
             self._follow_sticks(inputs, q, dt, outputs.vehicle_attitude_setpoint)
         else:
-            if runs or self.profile == PX4_V116:
+            if runs or self.profile in SINCE_V116:
                 self.sticks.reset_tilt()
             self.sticks.heading.rest(self.vehicle, q)
         if runs:
@@ -128,7 +142,9 @@ class AttitudeUnit:
                 self.law.turn(rotation)
 
     def _follow(self, setpoint):
-        self.law.follow(setpoint)
+        is_first = self.last_setpoint_us == 0
+        elapsed = None if is_first else seconds(setpoint.time_us, self.last_setpoint_us)
+        self.law.follow(setpoint, elapsed)
         self.thrust = setpoint.thrust_body
         self.last_setpoint_us = setpoint.time_us
 
@@ -141,7 +157,7 @@ class AttitudeUnit:
                 or mode.flag_control_velocity_enabled
                 or mode.flag_control_position_enabled
             )
-        if inputs.updated & AttitudeInputs.HOVER_THRUST_ESTIMATE and self.profile == PX4_V116:
+        if inputs.updated & AttitudeInputs.HOVER_THRUST_ESTIMATE and self.profile in SINCE_V116:
             hover = inputs.hover_thrust_estimate
             self.hover_estimate = self.values["MPC_THR_HOVER"]
             if hover.valid:
@@ -167,7 +183,8 @@ class AttitudeUnit:
             vehicle.is_landed = inputs.vehicle_land_detected.landed != 0
         if updated & AttitudeInputs.VEHICLE_LOCAL_POSITION:
             position = inputs.vehicle_local_position
-            vehicle.has_good_heading = position.heading_good_for_control != 0
+            if self.profile != PX4_V118:  # which does not read it
+                vehicle.has_good_heading = position.heading_good_for_control != 0
             vehicle.unaided_heading = position.unaided_heading
 
     def _follow_sticks(self, inputs, q, dt, out):
@@ -185,7 +202,9 @@ class AttitudeUnit:
         autotune = inputs.autotune_attitude_control_status
         age_us = (inputs.timestamp - autotune.timestamp) % 2**64
         is_new = self.has_autotune and age_us < AUTOTUNE_LASTS_US
-        if is_new and autotune.state in AUTOTUNE_STATES:
+        is_since_v117 = self.profile in SINCE_V117
+        states = AUTOTUNE_STATES if is_since_v117 else AUTOTUNE_STATES_BEFORE_V117
+        if is_new and autotune.state in states:
             rates = added(rates, autotune.rate_sp)
         out.roll, out.pitch, out.yaw = rates
         out.thrust_body = self.thrust

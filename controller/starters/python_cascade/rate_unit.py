@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The rate unit: rates of the body to torque and thrust, PX4 v1.14 to v1.16 mc_rate_control.
+"""The rate unit: rates of the body to torque and thrust, PX4 v1.14 to v1.18 mc_rate_control.
 
 Vectors (roll, pitch, yaw) are about the body axes x, y, z (FRD). Rates are in rad/s; torque, thrust
 and integrals have no unit. `attest list --parameters` has the unit of each parameter.
@@ -7,7 +7,7 @@ and integrals have no unit. `attest list --parameters` has the unit of each para
 
 from binary32 import EPSILON, HALF, ONE, TWO_PI, ZERO, Binary32, is_finite
 from messages import PARAMETER_UPDATE, RateInputs, RateOutputs
-from parameters import AXES, PX4_V114, PX4_V116, Parameters
+from parameters import AXES, PX4_V114, SINCE_V116, Parameters
 from scalar import LowPass, clamp, larger, radians, seconds, smaller, superexpo
 
 SHORTEST_DT = Binary32(0.000125)  # [s]
@@ -37,13 +37,13 @@ _DEFAULTS_OF_V114 = {
     "MC_ACRO_SUPEXPO": 0.7,
     "MC_ACRO_SUPEXPOY": 0.7,
 }
-_DEFAULTS_OF_V116 = {"MC_YAW_TQ_CUTOFF": 2.0}
+_DEFAULTS_SINCE_V116 = {"MC_YAW_TQ_CUTOFF": 2.0}
 
 
 def default_parameters(profile):
     if profile == PX4_V114:
         return {**_DEFAULTS, **_DEFAULTS_OF_V114}
-    return {**_DEFAULTS, **_DEFAULTS_OF_V116} if profile == PX4_V116 else _DEFAULTS
+    return {**_DEFAULTS, **_DEFAULTS_SINCE_V116} if profile in SINCE_V116 else _DEFAULTS
 
 
 class RateLaw:
@@ -104,7 +104,7 @@ class RateUnit:
     def __init__(self, profile):
         self.parameters = Parameters(default_parameters(profile))
         self.law = RateLaw()
-        self.yaw_filter = LowPass() if profile == PX4_V116 else None
+        self.yaw_filter = LowPass() if profile in SINCE_V116 else None
         self.last_sample_us = 0
         self.pending = 0  # bits of the topics that were published and are not yet latched
         self.own_setpoint = None  # rates and thrust of the sticks, while it is pending

@@ -52,6 +52,10 @@ def added(a, b):
     return tuple(x + y for x, y in zip(a, b))
 
 
+def subtracted(a, b):
+    return tuple(x - y for x, y in zip(a, b))
+
+
 def cross(a, b):
     (a0, a1, a2), (b0, b1, b2) = a, b
     return a1 * b2 - a2 * b1, -a0 * b2 + a2 * b0, a0 * b1 - a1 * b0
@@ -71,6 +75,11 @@ def product(q, p):
 def inverse(q):
     n = dot(q, q)
     return q[0] / n, -q[1] / n, -q[2] / n, -q[3] / n
+
+
+def turned(q, v):
+    """The vector v, turned by q."""
+    return product(product(q, (ZERO, *v)), inverse(q))[1:]
 
 
 def canonical(q):
@@ -108,9 +117,8 @@ def _axis_away_from(v):
     return (ZERO, ONE, ZERO) if y < z else (ZERO, ZERO, ONE)
 
 
-def of_rotation_vector(x, y):
-    """The rotation about the horizontal axis (x, y) by the length of (x, y) [rad]."""
-    v = (x, y, ZERO)
+def of_rotation_vector(v):
+    """The rotation about v by the length of v [rad]."""
     angle = norm(v)
     if angle < Binary32(1e-10):
         return IDENTITY

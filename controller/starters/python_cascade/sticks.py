@@ -6,7 +6,7 @@ version of the law, which holds their state. `Vehicle` is the state of the vehic
 """
 
 from binary32 import EPSILON, HALF, NAN, ONE, TWO, ZERO, Binary32, is_finite
-from parameters import PX4_V114, PX4_V116
+from parameters import PX4_V114, PX4_V115, PX4_V116, PX4_V117, PX4_V118
 from rotation import (
     DOWN,
     between,
@@ -34,6 +34,7 @@ from scalar import (
 )
 
 IDLE_THROTTLE = Binary32(-0.9)
+YAW_EXPO = Binary32(0.6)  # since v1.17
 CONVERGED = Binary32(0.0174532924)  # [rad], a degree
 LARGE_FOR_INT = Binary32(2.0**31)
 
@@ -78,7 +79,7 @@ class LockedHeading:
         heading = heading_of(q)
         before = self.correction
         self.correction = self._corrected(heading, vehicle.unaided_heading, dt)
-        stick = expo(dead_zone(sticks.yaw, p["MPC_HOLD_DZ"]), p["MPC_YAW_EXPO"])
+        stick = self._stick(sticks.yaw, p)
         rate = self.rate.update(p["MPC_MAN_Y_TAU"], dt, stick * radians(p["MPC_MAN_Y_MAX"]))
         if abs(rate) > EPSILON:
             self.setpoint = NAN
@@ -87,6 +88,9 @@ class LockedHeading:
         else:
             self.setpoint = wrap(self.setpoint - before + self.correction)
         return (self.setpoint if is_finite(self.setpoint) else heading), rate
+
+    def _stick(self, yaw, p):
+        return expo(dead_zone(yaw, p["MPC_HOLD_DZ"]), p["MPC_YAW_EXPO"])
 
     def _corrected(self, heading, unaided, dt):
         if not is_finite(unaided):
@@ -120,6 +124,34 @@ class LockedHeading:
         pass
 
 
+class LockedHeadingOfV117(LockedHeading):
+    """The dead zone has another name, and the curve of the stick is fixed."""
+
+    def _stick(self, yaw, p):
+        return expo(dead_zone(yaw, p["MAN_DEADZONE"]), YAW_EXPO)
+
+
+class LockedHeadingOfV118(LockedHeadingOfV117):
+    """The correction keeps its value while the heading of the gyros is lost, and starts anew when
+    it is back: how the two headings changed without it is not known."""
+
+    def __init__(self):
+        super().__init__()
+        self.is_lost = False  # in the last step that used the sticks
+
+    def _corrected(self, heading, unaided, dt):
+        was_lost = self.is_lost
+        self.is_lost = not is_finite(unaided)
+        if self.is_lost:
+            return self.correction
+        if not was_lost:
+            return super()._corrected(heading, unaided, dt)
+        self.drift.state = self.reference = wrap(heading - unaided)
+        self.is_converging = False
+        self.setpoint = NAN
+        return ZERO
+
+
 class IntegratedHeading:
     """v1.14 and v1.15: the integral of the yaw rate."""
 
@@ -150,7 +182,7 @@ class IntegratedHeading:
 
 
 class Throttle:
-    """v1.15 and v1.16: the limits of the thrust rise slowly after take-off and arming. In v1.16 the
+    """Since v1.15 the limits of the thrust rise slowly after take-off and arming. Since v1.16 the
     hover thrust moves slowly, too. `estimate` is that of the hover thrust, NaN in v1.15."""
 
     def __init__(self):
@@ -197,17 +229,22 @@ class ThrottleOfV114:
         pass
 
 
+_HEADINGS = {
+    PX4_V114: lambda: IntegratedHeading(heading_of_in_v114),
+    PX4_V115: lambda: IntegratedHeading(heading_of),
+    PX4_V116: LockedHeading,
+    PX4_V117: LockedHeadingOfV117,
+    PX4_V118: LockedHeadingOfV118,
+}
+
+
 class Sticks:
     def __init__(self, profile):
         low_pass = LowPassOfV114 if profile == PX4_V114 else LowPass
         self.roll = low_pass()
         self.pitch = low_pass()
         self.throttle = ThrottleOfV114() if profile == PX4_V114 else Throttle()
-        if profile == PX4_V116:
-            self.heading = LockedHeading()
-        else:
-            is_v114 = profile == PX4_V114
-            self.heading = IntegratedHeading(heading_of_in_v114 if is_v114 else heading_of)
+        self.heading = _HEADINGS[profile]()
 
     def setpoint(self, sticks, vehicle, q, p, dt):
         """q_d, yaw rate and thrust for the attitude q. `p` are the parameters, dt is in s."""
@@ -229,7 +266,7 @@ class Sticks:
         angle = norm(v)
         if angle > most:
             v = times(v, most / angle)
-        return of_rotation_vector(*v)
+        return of_rotation_vector((*v, ZERO))
 
     def reset_tilt(self):
         self.roll.state = self.pitch.state = ZERO
