@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
- * attest_cascade.h - the C ABI of the two units of PX4 v1.14 to v1.16: the attitude unit, which
+ * attest_cascade.h - the C ABI of the two units of PX4 v1.14 to v1.18: the attitude unit, which
  * computes a rates setpoint from the attitude, and the rate unit, which computes torque from rates.
  *
  * Each unit is an extension of attest_unit.h, a table of functions that a port returns from its
@@ -26,6 +26,18 @@
  * mode publishes vehicle_attitude_setpoint; the rate unit in acro mode publishes
  * vehicle_rates_setpoint. The unit keeps this setpoint as the newest sample of that topic. It
  * replaces an external sample that the unit has not used yet. At its first use it counts as new.
+ * In the firmware this holds for multicopters only. Since v1.15 the attitude unit of a VTOL
+ * publishes mc_virtual_attitude_setpoint and reads vehicle_attitude_setpoint, so its own setpoint
+ * comes back later, through another module. The host has no such module: under attest the attitude
+ * unit of a VTOL keeps its own setpoint, too.
+ *
+ * Parameters: create() comes before set_parameter(), so the unit reads its parameters no earlier
+ * than at its first step. Those set before the first step hold from the start: initial values that
+ * depend on a parameter have its value. The firmware of v1.14 to v1.18 checks parameter_update at
+ * most once a second. The host passes it in the next step, and the port must read the parameters in
+ * that step. In the vehicle a port may do either: a change then takes effect at another time.
+ *
+ * Profiles: the comment of a field says which profiles read it, if not all do.
  */
 #ifndef ATTEST_CASCADE_H
 #define ATTEST_CASCADE_H
@@ -68,15 +80,16 @@ typedef struct attest_attitude_inputs {
 
   struct {                  /* topic vehicle_attitude_setpoint, external samples only */
     uint64_t timestamp;     /* [us] when it was published; the unit drops a sample that is not
-                             * newer than the last one that it used */
+                             * newer than the last one that it used. In px4-v1.18 the time since
+                             * that one is also the time step of the reference model */
     float q_d[4];           /* desired attitude, body FRD to world NED */
     float thrust_body[3];   /* [-1..1] along body x, y, z; hover is about {0, 0, -0.5} */
     float yaw_sp_move_rate; /* [rad/s] about world z, fed forward; ignored if not finite */
   } vehicle_attitude_setpoint;
 
   struct {                  /* topic vehicle_status */
-    uint64_t armed_time;    /* [us] when the vehicle was armed */
-    uint8_t armed;          /* flag: arming_state is ARMED */
+    uint64_t armed_time;    /* [us] when the vehicle was armed; read since px4-v1.15.4 */
+    uint8_t armed;          /* flag: arming_state is ARMED; read since px4-v1.15.4 */
     uint8_t is_rotary_wing; /* flag: vehicle_type is ROTARY_WING; initially true */
     uint8_t is_vtol;
     uint8_t in_transition_mode;
@@ -85,8 +98,8 @@ typedef struct attest_attitude_inputs {
 
   struct {              /* topic autotune_attitude_control_status */
     uint64_t timestamp; /* [us] when it was published */
-    float rate_sp[3];   /* [rad/s] added to the rates setpoint if `state` is 2, 4, 6 or 10, and
-                           `timestamp` is less than 1 s ago */
+    float rate_sp[3];   /* [rad/s] added to the rates setpoint if `timestamp` is less than 1 s ago
+                         * and `state` is 3, 6, 9 or 13; before px4-v1.17 if it is 2, 4, 6 or 10 */
     uint8_t state;
   } autotune_attitude_control_status;
 
@@ -98,11 +111,12 @@ typedef struct attest_attitude_inputs {
   } manual_control_setpoint;
 
   struct {                            /* topic vehicle_local_position */
-    float unaided_heading;            /* [rad] from gyros alone; used if finite; initially NaN */
-    uint8_t heading_good_for_control; /* flag; initially true */
+    float unaided_heading;            /* [rad] from gyros alone; used if finite; initially NaN;
+                                       * read since px4-v1.16.0 */
+    uint8_t heading_good_for_control; /* flag; initially true; not read in px4-v1.18 */
   } vehicle_local_position;
 
-  struct {              /* topic hover_thrust_estimate */
+  struct {              /* topic hover_thrust_estimate, read since px4-v1.16.0 */
     float hover_thrust; /* [0..1] */
     uint8_t valid;
   } hover_thrust_estimate;
@@ -116,7 +130,7 @@ typedef struct attest_attitude_inputs {
   } vehicle_control_mode;
 
   struct {          /* topic vehicle_land_detected */
-    uint8_t landed; /* flag; initially true */
+    uint8_t landed; /* flag; initially true; read since px4-v1.15.4 */
   } vehicle_land_detected;
 } attest_attitude_inputs;
 
@@ -138,7 +152,8 @@ typedef struct attest_attitude_outputs {
 } attest_attitude_outputs;
 
 typedef struct attest_attitude_unit {
-  /* As in attest_unit. `profile` is "px4-v1.14.4", "px4-v1.15.4" or "px4-v1.16.0". */
+  /* As in attest_unit. `profile` is "px4-v1.14.4", "px4-v1.15.4", "px4-v1.16.0", "px4-v1.17" or
+   * "px4-v1.18". */
   void* (*create)(const char* profile);
   void (*destroy)(void* self);
   int (*set_parameter)(void* self, const char* name, float value);
@@ -244,7 +259,8 @@ typedef struct attest_rate_outputs {
 } attest_rate_outputs;
 
 typedef struct attest_rate_unit {
-  /* As in attest_unit. `profile` is "px4-v1.14.4", "px4-v1.15.4" or "px4-v1.16.0". */
+  /* As in attest_unit. `profile` is "px4-v1.14.4", "px4-v1.15.4", "px4-v1.16.0", "px4-v1.17" or
+   * "px4-v1.18". */
   void* (*create)(const char* profile);
   void (*destroy)(void* self);
   int (*set_parameter)(void* self, const char* name, float value);
