@@ -65,20 +65,20 @@ std::vector<Listed> listed_parameters(Module module,
   return rows;
 }
 
-// Says which of the profiles were read before their release.
-void list_as_of(const std::set<std::string_view>& names) {
-  const char* separator = "\n";
+// Notes which of the profiles were read before their release: apart from the list, which programs
+// may read.
+void note_as_of(const std::set<std::string_view>& names) {
   for (const ProfileInfo& profile : known_profiles()) {
     if (profile.as_of.empty() || !names.contains(profile.name)) continue;
-    fmt::print("{}{} is the law as of {}; the final release may differ\n",
-               std::exchange(separator, ""), profile.name, profile.as_of);
+    fmt::print(stderr, "attest: note: {} is the law as of {}; the final release may differ\n",
+               profile.name, profile.as_of);
   }
 }
 
-void list_as_of(const std::vector<SelectedCase>& cases) {
+void note_as_of(const std::vector<SelectedCase>& cases) {
   std::set<std::string_view> names;
   for (const SelectedCase& selected : cases) names.insert(selected.the_case.profile);
-  list_as_of(names);
+  note_as_of(names);
 }
 
 void list_parameters(const std::vector<const ProfileInfo*>& profiles) {
@@ -99,7 +99,7 @@ void list_parameters(const std::vector<const ProfileInfo*>& profiles) {
   }
   std::set<std::string_view> names;
   for (const ProfileInfo* profile : profiles) names.insert(profile->name);
-  list_as_of(names);
+  note_as_of(names);
 }
 
 std::string_view type_name(ChannelType type) {
@@ -210,7 +210,7 @@ int list_command(const ListOptions& options, const Globals& globals) {
   const auto cases = options.select.cases_in(suite->case_folders());
   if (!cases) return report_error(cases.error());
   options.groups ? list_groups(*cases) : list_cases(*cases);
-  list_as_of(*cases);
+  note_as_of(*cases);
   return exit_ok;
 }
 

@@ -5,7 +5,7 @@ recorded() { ls "$SOURCE"/golden/recorded/*/*.csv | grep -v tailsitter; }
 @test "the reference agrees to the bit with what the firmware recorded" {
   run "$ATTEST" replay --level exact $(recorded)
   [ "$status" -eq 0 ]
-  has "66 of 66 traces conform"
+  has "79 of 79 traces conform"
 }
 
 @test "tailsitter recovery agrees within a tolerance" {

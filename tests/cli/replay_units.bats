@@ -219,7 +219,7 @@ const attest_unit* attest_unit_v1(void) {
 WILD
   cc -c -fPIC -O1 -Dattest_unit_v1=right_unit_v1 "-I$SOURCE/controller" "$starter/port.c" -o port.o
   cc -shared -fPIC -O1 "$@" "-I$SOURCE/controller" "-I$starter" wild.c port.o \
-    "$starter"/{attitude_law,attitude_unit,rate_unit,sticks}.c -lm -o wild.so
+    "$starter"/{attitude_law,attitude_unit,rate_unit,reference_model,sticks}.c -lm -o wild.so
 }
 
 @test "wild values at every 25th tick fail" {

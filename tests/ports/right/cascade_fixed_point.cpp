@@ -134,13 +134,17 @@ struct AttitudeStep : AttitudeStepStages<Fixed> {
   }
 };
 
+// The yaw rate is rounded, so it is above 2^-23 if it is more than the bits of 2^-23 that fit: with
+// 22 fraction bits, if it is not 0.
+bool is_commanded(Fixed yaw_rate) {
+  constexpr Fixed threshold = Fixed::of_raw((Fixed::Wide{1} << Fixed::fraction_bits) >> 23);
+  return abs(yaw_rate) > threshold;
+}
+
 struct Sticks : StickStages<Fixed> {
-  // The yaw rate is rounded, so it is above 2^-23 if it is more than the bits of 2^-23 that fit:
-  // with 22 fraction bits, if it is not 0.
   static Fixed locked_yaw(Fixed yaw_sp, Fixed rate, Fixed heading, Fixed old_correction,
                           Fixed correction) {
-    constexpr Fixed threshold = Fixed::of_raw((Fixed::Wide{1} << Fixed::fraction_bits) >> 23);
-    if (abs(rate) > threshold) return no_yaw();
+    if (is_commanded(rate)) return no_yaw();
     return StickStages<Fixed>::locked_yaw(yaw_sp, Fixed(0), heading, old_correction, correction);
   }
 
@@ -172,6 +176,11 @@ struct Model : ReferenceModelStages<Fixed> {
     const Vector commanded(change(command[0], elapsed_us), change(command[1], elapsed_us),
                            change(command[2], elapsed_us));
     return (error - left.error_of_error * error) + left.error_of_rate * rate + commanded;
+  }
+
+  static Vector without_yaw(const Vector& rate, const Vector& z_R, Fixed yaw_rate) {
+    if (!is_finite(yaw_rate) || !is_commanded(yaw_rate)) return rate;
+    return rate - z_R * dot(rate, z_R);
   }
 };
 
