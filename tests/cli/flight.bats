@@ -42,7 +42,7 @@ broken() {
 @test "vehicle and plant select flights" {
   run "$ATTEST" run --vehicle hexa --plant ode --filter 'flight/hover' --rate 100,1000
   [ "$status" -eq 0 ]
-  has "PASS 7 of 7"
+  has "PASS 9 of 9"
   run "$ATTEST" run --filter 'px4-v1.5.5/flight/hover@250hz-iris-mujoco'
   has "PASS 1 of 1"
   run "$ATTEST" run --vehicle hxea --filter 'flight/*'
