@@ -102,6 +102,7 @@ inline constexpr Profile newest = every_profile.front(), oldest = every_profile.
 inline constexpr ProfileRange all_profiles{newest, oldest};
 inline constexpr ProfileRange from_v1_18{newest, Profile::px4_v1_18};
 inline constexpr ProfileRange from_v1_17{newest, Profile::px4_v1_17};
+inline constexpr ProfileRange until_v1_17{Profile::px4_v1_17, oldest};
 inline constexpr ProfileRange until_v1_16_0{Profile::px4_v1_16_0, oldest};
 inline constexpr ProfileRange only_v1_16_0{Profile::px4_v1_16_0, Profile::px4_v1_16_0};
 inline constexpr ProfileRange from_v1_16_0{newest, Profile::px4_v1_16_0};

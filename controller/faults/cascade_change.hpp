@@ -18,6 +18,7 @@ using RateOut = attest_rate_outputs;
 using V = const Vector&;
 
 inline constexpr auto all = cascade::all_profiles;
+inline constexpr auto until_v1_17 = cascade::until_v1_17;
 inline constexpr auto from_v1_16_0 = cascade::from_v1_16_0;
 inline constexpr auto from_v1_15_4 = cascade::from_v1_15_4;
 inline constexpr auto until_v1_15_4 = cascade::until_v1_15_4;

@@ -47,24 +47,6 @@ const Fault guard_list[] = {
        law.attitude_unit.attitude.remaining_yaw = conjugate_product;
        law.attitude_unit.attitude.error = conjugate_product;
      }},
-    {"cascade-yaw-ff-of-nan", "rate_limit", Stage::feed_forward,
-     "adds a commanded yaw rate that is not finite", "a yaw rate of NaN", "a missing guard",
-     [](FaultyLaw& law) {
-       law.attitude_unit.attitude.feed_forward = [](const Vector& rates, const Quat& q_WB,
-                                                    Scalar yaw_rate) {
-         return Vector(rates + cascade::z_axis(cascade::inverse(q_WB)) * yaw_rate);
-       };
-     }},
-    {"cascade-yaw-ff-of-infinity", "rate_limit", Stage::feed_forward,
-     "adds an infinite yaw rate: it tests for NaN only", "an infinite yaw rate",
-     "isnan for isfinite",
-     [](FaultyLaw& law) {
-       law.attitude_unit.attitude.feed_forward = [](const Vector& rates, const Quat& q_WB,
-                                                    Scalar yaw_rate) {
-         if (std::isnan(yaw_rate)) return rates;
-         return Vector(rates + cascade::z_axis(cascade::inverse(q_WB)) * yaw_rate);
-       };
-     }},
     {"cascade-limit-drops-nan", "robustness", Stage::limit, "limits a rate that is NaN to a number",
      "an attitude of NaN", "order of arguments",
      [](FaultyLaw& law) { law.attitude_unit.attitude.limit = limited_by_fmin; }},
@@ -83,6 +65,14 @@ const Fault guard_list[] = {
      [](FaultyLaw& law) {
        law.attitude_unit.attitude.setpoint = [](const Quat& given) {
          return given.isZero(0) ? cascade::identity<Scalar>() : QuaternionLaw::setpoint(given);
+       };
+     }},
+    {"cascade-reset-nan-ignored", "robustness", Stage::guard,
+     "does not turn the setpoint by a delta_q_reset that is not finite", "a delta_q_reset of NaN",
+     "a guard too many",
+     [](FaultyLaw& law) {
+       law.attitude_unit.attitude.adapted = [](const Quat& delta, const Quat& q_WD) {
+         return is_usable(delta) ? QuaternionLaw::adapted(delta, q_WD) : q_WD;
        };
      }},
     {"cascade-rates-nan-is-0", "robustness", Stage::guard, "publishes rates of 0 instead of NaN",

@@ -41,14 +41,14 @@ void lock_by_stick(FaultyLaw& law) {
 }
 
 const Fault yaw_lock_list[] = {
-    {"cascade-yaw-expo-ignored", "sticks", Stage::sticks, "does not read MPC_YAW_EXPO",
+    {"cascade-yaw-expo-ignored", "sticks", Stage::sticks, "gives the yaw stick no expo",
      "the yaw stick at half", "a missing curve",
      [](FaultyLaw& law) {
        change_shaped_rate(law, [](Scalar stick, const StickGains& gains) {
          return cascade::deadzone(stick, gains.yaw_deadzone);
        });
      }},
-    {"cascade-yaw-deadzone-ignored", "sticks", Stage::sticks, "does not read MPC_HOLD_DZ",
+    {"cascade-yaw-deadzone-ignored", "sticks", Stage::sticks, "gives the yaw stick no deadzone",
      "the yaw stick at 0.05", "a missing curve",
      [](FaultyLaw& law) {
        change_shaped_rate(law, [](Scalar stick, const StickGains& gains) {
@@ -187,8 +187,8 @@ const Fault yaw_lock_list[] = {
        });
      }},
     {"cascade-yaw-correction-of-nan", "sticks", Stage::yaw_lock,
-     "keeps the correction while the unaided heading is missing",
-     "an unaided heading that ends during a convergence", "a missing reset",
+     "goes on with the yaw correction after a time without unaided heading",
+     "an unaided heading that is lost during a convergence", "a missing reset",
      [](FaultyLaw& law) {
        change_correction(law, [](YawCorrection& state, Scalar heading, Scalar unaided, Scalar dt_s,
                                  const CascadeTraits& traits) {
@@ -215,7 +215,7 @@ const Fault yaw_lock_list[] = {
                    [](AttitudeIn& in) { in.vehicle_local_position.heading_good_for_control = 1; });
      },
      {},
-     all},
+     until_v1_17},
     {"cascade-yaw-starts-with-bad-heading",
      "sticks",
      Stage::yaw_lock,
@@ -229,7 +229,7 @@ const Fault yaw_lock_list[] = {
                   });
      },
      {},
-     all},
+     until_v1_17},
     {"cascade-unaided-starts-at-0", "sticks", Stage::yaw_lock,
      "takes the unaided heading for 0 before the first sample of vehicle_local_position",
      "a start without that sample and a heading that jumps", "initial state",

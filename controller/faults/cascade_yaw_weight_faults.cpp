@@ -139,53 +139,6 @@ const Fault yaw_weight_list[] = {
          }
        });
      }},
-    {"cascade-yaw-ff-missing", "rate_limit", Stage::feed_forward,
-     "does not add the commanded yaw rate", "a yaw rate", "a missing term",
-     [](FaultyLaw& law) {
-       change_yaw_feed_forward(law, [](const Quat&, Scalar) { return Vector(Vector::Zero()); });
-     }},
-    {"cascade-yaw-ff-on-body-z", "rate_limit", Stage::feed_forward,
-     "adds the commanded yaw rate to the body's yaw rate only", "a yaw rate while tilted",
-     "another frame",
-     [](FaultyLaw& law) {
-       change_yaw_feed_forward(law,
-                               [](const Quat&, Scalar yaw_rate) { return Vector(0, 0, yaw_rate); });
-     }},
-    {"cascade-yaw-ff-transposed", "rate_limit", Stage::feed_forward,
-     "takes the body's z axis in the world instead of the world's in the body",
-     "a yaw rate while tilted", "transposed rotation",
-     [](FaultyLaw& law) {
-       change_yaw_feed_forward(law, [](const Quat& q_WB, Scalar yaw_rate) {
-         return Vector(cascade::z_axis(q_WB) * yaw_rate);
-       });
-     }},
-    {"cascade-yaw-ff-reversed", "rate_limit", Stage::feed_forward,
-     "adds the commanded yaw rate with the other sign", "a yaw rate", "a sign",
-     [](FaultyLaw& law) {
-       change_yaw_feed_forward(law, [](const Quat& q_WB, Scalar yaw_rate) {
-         return Vector(cascade::z_axis(cascade::inverse(q_WB)) * -yaw_rate);
-       });
-     }},
-    {"cascade-yaw-ff-at-setpoint", "rate_limit", Stage::feed_forward,
-     "turns about the z axis as seen from the desired attitude", "a yaw rate and a tilt error",
-     "another attitude",
-     [](FaultyLaw& law) {
-       auto q_WD = std::make_shared<Quat>(cascade::identity<Scalar>());
-       law.attitude_unit.attitude.error = [q_WD](const Quat& q_WB, const Quat& target) {
-         *q_WD = target;
-         return QuaternionStages::Law::error(q_WB, target);
-       };
-       change_yaw_feed_forward(law, [q_WD](const Quat&, Scalar yaw_rate) {
-         return Vector(cascade::z_axis(cascade::inverse(*q_WD)) * yaw_rate);
-       });
-     }},
-    {"cascade-yaw-ff-in-degrees", "rate_limit", Stage::feed_forward,
-     "takes the commanded yaw rate in deg/s", "a yaw rate", "degrees",
-     [](FaultyLaw& law) {
-       change_yaw_feed_forward(law, [](const Quat& q_WB, Scalar yaw_rate) {
-         return Vector(cascade::z_axis(cascade::inverse(q_WB)) * cascade::radians(yaw_rate));
-       });
-     }},
     {"cascade-limit-missing", "rate_limit", Stage::limit, "does not limit the rates",
      "a large error", "a missing clamp",
      [](FaultyLaw& law) {
@@ -244,8 +197,78 @@ const Fault yaw_weight_list[] = {
      }},
 };
 
+// In v1.18 the reference model feeds the yaw rate forward (cascade_model_forward_faults.cpp).
+const Fault yaw_feed_forward_list[] = {
+    {"cascade-yaw-ff-missing", "rate_limit", Stage::feed_forward,
+     "does not add the commanded yaw rate", "a yaw rate", "a missing term",
+     [](FaultyLaw& law) {
+       change_yaw_feed_forward(law, [](const Quat&, Scalar) { return Vector(Vector::Zero()); });
+     }},
+    {"cascade-yaw-ff-on-body-z", "rate_limit", Stage::feed_forward,
+     "adds the commanded yaw rate to the body's yaw rate only", "a yaw rate while tilted",
+     "another frame",
+     [](FaultyLaw& law) {
+       change_yaw_feed_forward(law,
+                               [](const Quat&, Scalar yaw_rate) { return Vector(0, 0, yaw_rate); });
+     }},
+    {"cascade-yaw-ff-transposed", "rate_limit", Stage::feed_forward,
+     "takes the body's z axis in the world instead of the world's in the body",
+     "a yaw rate while tilted", "transposed rotation",
+     [](FaultyLaw& law) {
+       change_yaw_feed_forward(law, [](const Quat& q_WB, Scalar yaw_rate) {
+         return Vector(cascade::z_axis(q_WB) * yaw_rate);
+       });
+     }},
+    {"cascade-yaw-ff-reversed", "rate_limit", Stage::feed_forward,
+     "adds the commanded yaw rate with the other sign", "a yaw rate", "a sign",
+     [](FaultyLaw& law) {
+       change_yaw_feed_forward(law, [](const Quat& q_WB, Scalar yaw_rate) {
+         return Vector(cascade::z_axis(cascade::inverse(q_WB)) * -yaw_rate);
+       });
+     }},
+    {"cascade-yaw-ff-at-setpoint", "rate_limit", Stage::feed_forward,
+     "turns about the z axis as seen from the desired attitude", "a yaw rate and a tilt error",
+     "another attitude",
+     [](FaultyLaw& law) {
+       auto q_WD = std::make_shared<Quat>(cascade::identity<Scalar>());
+       law.attitude_unit.attitude.error = [q_WD](const Quat& q_WB, const Quat& target) {
+         *q_WD = target;
+         return QuaternionStages::Law::error(q_WB, target);
+       };
+       change_yaw_feed_forward(law, [q_WD](const Quat&, Scalar yaw_rate) {
+         return Vector(cascade::z_axis(cascade::inverse(*q_WD)) * yaw_rate);
+       });
+     }},
+    {"cascade-yaw-ff-in-degrees", "rate_limit", Stage::feed_forward,
+     "takes the commanded yaw rate in deg/s", "a yaw rate", "degrees",
+     [](FaultyLaw& law) {
+       change_yaw_feed_forward(law, [](const Quat& q_WB, Scalar yaw_rate) {
+         return Vector(cascade::z_axis(cascade::inverse(q_WB)) * cascade::radians(yaw_rate));
+       });
+     }},
+    {"cascade-yaw-ff-of-nan", "rate_limit", Stage::feed_forward,
+     "adds a commanded yaw rate that is not finite", "a yaw rate of NaN", "a missing guard",
+     [](FaultyLaw& law) {
+       law.attitude_unit.attitude.feed_forward = [](const Vector& rates, const Quat& q_WB,
+                                                    Scalar yaw_rate) {
+         return Vector(rates + cascade::z_axis(cascade::inverse(q_WB)) * yaw_rate);
+       };
+     }},
+    {"cascade-yaw-ff-of-infinity", "rate_limit", Stage::feed_forward,
+     "adds an infinite yaw rate: it tests for NaN only", "an infinite yaw rate",
+     "isnan for isfinite",
+     [](FaultyLaw& law) {
+       law.attitude_unit.attitude.feed_forward = [](const Vector& rates, const Quat& q_WB,
+                                                    Scalar yaw_rate) {
+         if (std::isnan(yaw_rate)) return rates;
+         return Vector(rates + cascade::z_axis(cascade::inverse(q_WB)) * yaw_rate);
+       };
+     }},
+};
+
 }  // namespace
 
 std::span<const Fault> yaw_weight_faults() { return yaw_weight_list; }
+std::span<const Fault> yaw_feed_forward_faults() { return yaw_feed_forward_list; }
 
 }  // namespace attest::faults::in_cascade

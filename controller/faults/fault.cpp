@@ -99,6 +99,7 @@ std::vector<Subject> subjects() {
           {in_cascade::attitude_faults(), cascades},
           {in_cascade::large_angle_faults(), cascades},
           {in_cascade::yaw_weight_faults(), cascades},
+          {in_cascade::yaw_feed_forward_faults(), cascade::until_v1_17},
           {in_cascade::stick_faults(), cascades},
           {in_cascade::yaw_lock_faults(), from_v1_16_0},
           {in_cascade::throttle_faults(), cascades},

@@ -35,6 +35,7 @@ namespace in_cascade {
 std::span<const Fault> attitude_faults();
 std::span<const Fault> large_angle_faults();
 std::span<const Fault> yaw_weight_faults();
+std::span<const Fault> yaw_feed_forward_faults();
 std::span<const Fault> stick_faults();
 std::span<const Fault> yaw_lock_faults();
 std::span<const Fault> throttle_faults();

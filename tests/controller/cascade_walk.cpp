@@ -11,7 +11,7 @@
 namespace attest::test {
 namespace {
 
-constexpr int walk_count = 700;
+constexpr int walk_count = 900;
 constexpr int step_count = 160;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -88,6 +88,8 @@ float value_for(Draw& draw, const cascade::ParameterInfo& info) {
   if (info.is_int()) return static_cast<float>(draw.below(3));
   if (info.name == "MC_YAW_WEIGHT") return draw.of({0.0f, 0.05f, 0.7f, 1.0f, 1.5f});
   if (info.name == "MPC_THR_HOVER") return draw.of({0.06f, 0.35f, 0.89f});
+  if (info.name == "MC_REF_W_N") return draw.of({0.02f, 3.0f, 30.0f, 50.0f, 200.0f});
+  if (info.name == "MC_REF_FF") return draw.of({0.0f, 0.4f, 1.0f, 1.5f});
   const float max = std::isfinite(info.max) ? info.max : 2 * info.default_value + 0.3f;
   return draw.chance(0.1f) ? info.min : draw.uniform(info.min, max);
 }
@@ -133,7 +135,7 @@ void draw_position(Draw& draw, attest_attitude_inputs& in) {
   if (draw.chance(0.3f)) heading = draw.of({nan, 0.0f, infinity});
   if (!std::isfinite(heading) || draw.chance(0.2f)) heading = draw.uniform(-pi, pi);
   heading += draw.of({0.3f, 0.03f}) * draw.uniform(-1, 1);
-  if (draw.chance(0.1f)) heading = nan;
+  if (draw.chance(0.15f)) heading = nan;
 }
 
 void draw_reset(Draw& draw, attest_attitude_inputs& in) {
@@ -166,7 +168,7 @@ void draw_autotune(Draw& draw, attest_attitude_inputs& in) {
   auto& autotune = in.autotune_attitude_control_status;
   autotune.timestamp = in.timestamp - draw.of<std::uint64_t>({0, 0, 500000, 2000000});
   for (float& rate : autotune.rate_sp) rate = draw.uniform(-1, 1);
-  autotune.state = static_cast<std::uint8_t>(draw.below(12));
+  autotune.state = static_cast<std::uint8_t>(draw.below(14));
 }
 
 // Each topic changes with the probability `restless`.
@@ -183,7 +185,8 @@ void wander(Draw& draw, float restless, attest_attitude_inputs& in) {
   if (moves(0.3f)) draw_status(draw, in);
   if (moves(0.5f)) draw_position(draw, in);
   if (moves(0.3f)) in.vehicle_land_detected.landed = draw.flag(0.3f);
-  if (moves(0.5f)) in.hover_thrust_estimate = {draw.of({0.02f, 0.4f, 0.97f, nan}), draw.flag(0.8f)};
+  if (moves(0.5f))
+    in.hover_thrust_estimate = {draw.of({0.02f, 0.02f, 0.4f, 0.97f, nan}), draw.flag(0.8f)};
   if (moves(0.3f)) draw_autotune(draw, in);
 }
 
