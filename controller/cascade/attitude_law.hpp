@@ -123,7 +123,7 @@ class AttitudeLaw {
     if (!follows_model_) {
       q_WD_ = target;
       yaw_rate_ = yaw_rate;
-    } else if (last_us == 0) {
+    } else if (model_.is_first(last_us)) {
       q_WD_ = model_.start(target);
     } else {
       q_WD_ = model_.follow(q_WD_, target, yaw_rate, time_us - last_us);

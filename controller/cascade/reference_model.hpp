@@ -36,6 +36,9 @@ struct ReferenceModelStages {
   using Q = Quaternion<Scalar>;
   using Gains = ReferenceModelGains<Scalar>;
 
+  // Whether no setpoint was taken before.
+  ATTEST_INLINE static bool is_first(std::uint64_t last_us) { return last_us == 0; }
+
   // The time since the last setpoint [s]. It is rounded to Scalar before it is scaled, and has no
   // limits.
   ATTEST_INLINE static Scalar elapsed(std::uint64_t elapsed_us) {
@@ -113,6 +116,8 @@ class ReferenceModel {
   explicit ReferenceModel(Stages stages = {}) : stages_(std::move(stages)) {}
 
   void set_gains(const ReferenceModelGains<Scalar>& gains) { gains_ = gains; }
+
+  bool is_first(std::uint64_t last_us) const { return stages_.is_first(last_us); }
 
   // Takes the first setpoint. Returns the attitude of the model, which is the setpoint.
   Q start(const Q& q_WD) {

@@ -22,8 +22,6 @@ void change_both_attitudes(FaultyLaw& law, Change change) {
   });
 }
 
-Quat conjugated(const Quat& q) { return {q[0], -q[1], -q[2], -q[3]}; }
-
 // The rotation vector: axis times angle. The law uses axis times twice the sine of half the angle.
 Vector rotation_angle(const Quat& error) {
   const Vector axis = cascade::imaginary_part(error);

@@ -18,12 +18,25 @@ using RateOut = attest_rate_outputs;
 using V = const Vector&;
 
 inline constexpr auto all = cascade::all_profiles;
+inline constexpr auto from_v1_18 = cascade::from_v1_18;
+inline constexpr auto from_v1_17 = cascade::from_v1_17;
 inline constexpr auto until_v1_17 = cascade::until_v1_17;
 inline constexpr auto from_v1_16_0 = cascade::from_v1_16_0;
 inline constexpr auto from_v1_15_4 = cascade::from_v1_15_4;
 inline constexpr auto until_v1_15_4 = cascade::until_v1_15_4;
 inline constexpr auto only_v1_15_4 = cascade::only_v1_15_4;
 inline constexpr auto only_v1_14_4 = cascade::only_v1_14_4;
+
+inline ModelStages& model_of(FaultyLaw& law) { return law.attitude_unit.model; }
+
+// The vector v, turned by q.
+inline Vector turned(const Quat& q, V v) {
+  using cascade::product;
+  return cascade::imaginary_part(
+      product(product(q, Quat(0, v[0], v[1], v[2])), cascade::inverse(q)));
+}
+
+inline Quat conjugated(const Quat& q) { return {q[0], -q[1], -q[2], -q[3]}; }
 
 // Changes the gains that the law computes. Unit is AttitudeUnitLaw or RateUnitLaw. Change has the
 // signature void(Gains&, const CascadeParameters&).
@@ -62,6 +75,25 @@ void follow(FaultyLaw& law) {
   const auto change = [](CascadeTraits& traits) { traits.*trait = value; };
   change_traits(law.attitude_unit, change);
   change_traits(law.rate_unit, change);
+}
+
+// Whether the unit's profile has a reference model. A change outside the stages of the model must
+// leave the other profiles as they are.
+inline std::shared_ptr<bool> watch_for_model(FaultyLaw& law) {
+  auto has_model = std::make_shared<bool>(false);
+  change_traits(law.attitude_unit, [has_model](CascadeTraits& traits) {
+    *has_model = traits.follows_reference_model;
+  });
+  return has_model;
+}
+
+// The attitude setpoint that was taken last, of norm 1.
+inline std::shared_ptr<Quat> watch_setpoint(FaultyLaw& law) {
+  auto q_WD = std::make_shared<Quat>(cascade::identity<Scalar>());
+  law.attitude_unit.attitude.setpoint = [q_WD](const Quat& given) {
+    return *q_WD = QuaternionStages::Law::setpoint(given);
+  };
+  return q_WD;
 }
 
 // Uses the value of parameter `from` also for parameter `to`.

@@ -232,6 +232,19 @@ const Fault mode_list[] = {
          return StepLaw::autotuned(rates, topics, now_us, traits);
        };
      }},
+    {"cascade-follows-v1.16.0-autotune",
+     "modes",
+     Stage::autotune,
+     "adds the rates of autotune in the states of v1.16.0",
+     "autotune of roll",
+     "another version",
+     [](FaultyLaw& law) {
+       change_traits(law.attitude_unit, [](CascadeTraits& traits) {
+         traits.autotune_states = cascade::traits_of(cascade::Profile::px4_v1_16_0).autotune_states;
+       });
+     },
+     {},
+     from_v1_17},
     {"cascade-autotune-not-in-test", "modes", Stage::autotune,
      "does not add the rates of autotune in the test of its gains", "autotune in its test",
      "a missing case", leave_out_autotune_state<3>},

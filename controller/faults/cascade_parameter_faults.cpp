@@ -19,6 +19,19 @@ void keep_at(FaultyLaw& law, float value) {
   change_parameters(law.rate_unit, change);
 }
 
+// One parameter has another default. A value that was set to the default is changed, too.
+template <float P::*member>
+void change_default(FaultyLaw& law, float other) {
+  auto defaults = std::make_shared<P>();
+  law.attitude_unit.step.traits = [defaults](cascade::Profile profile) {
+    *defaults = default_parameters(cascade::attitude_parameters(), profile);
+    return AttitudeStepStages::Law::traits(profile);
+  };
+  change_parameters(law.attitude_unit, [defaults, other](P& p) {
+    if (p.*member == (*defaults).*member) p.*member = other;
+  });
+}
+
 template <typename Unit>
 void read_once(Unit& unit) {
   unit.step.gains = [first = std::optional<P>{}](const P& p) mutable {
@@ -36,6 +49,7 @@ void read_late(Unit& unit) {
 
 constexpr const char* wrong_name = "a wrong parameter";
 constexpr const char* not_read = "a missing parameter";
+constexpr const char* old_default = "a default of another version";
 
 const Fault parameter_list[] = {
     {"cascade-attitude-param-once", "parameters", Stage::parameters,
@@ -158,6 +172,78 @@ const Fault parameter_list[] = {
      [](FaultyLaw& law) { keep_at<&P::mc_yaw_tq_cutoff>(law, 2.0f); },
      {},
      from_v1_16_0},
+    {"cascade-roll-p-of-v1.16.0",
+     "attitude",
+     Stage::parameters,
+     "has the default 6.5 for MC_ROLL_P",
+     "a roll error",
+     old_default,
+     [](FaultyLaw& law) { change_default<&P::mc_roll_p>(law, 6.5f); },
+     {},
+     from_v1_17},
+    {"cascade-pitch-p-of-v1.16.0",
+     "attitude",
+     Stage::parameters,
+     "has the default 6.5 for MC_PITCH_P",
+     "a pitch error",
+     old_default,
+     [](FaultyLaw& law) { change_default<&P::mc_pitch_p>(law, 6.5f); },
+     {},
+     from_v1_17},
+    {"cascade-yaw-deadzone-not-read",
+     "sticks",
+     Stage::parameters,
+     "does not read MAN_DEADZONE, in v1.16.0 MPC_HOLD_DZ",
+     "another value",
+     not_read,
+     [](FaultyLaw& law) { keep_at<&P::man_deadzone>(law, 0.1f); },
+     {},
+     from_v1_16_0},
+    {"cascade-yaw-deadzone-default-0",
+     "sticks",
+     Stage::parameters,
+     "has the default 0 for the deadzone of the yaw stick",
+     "the yaw stick at half",
+     "a wrong default",
+     [](FaultyLaw& law) { change_default<&P::man_deadzone>(law, 0.0f); },
+     {},
+     from_v1_16_0},
+    {"cascade-yaw-expo-0.69",
+     "sticks",
+     Stage::parameters,
+     "gives the yaw stick an expo of 0.69, the default of acro in v1.14.4",
+     "the yaw stick at half",
+     "a wrong factor",
+     [](FaultyLaw& law) { keep_at<&P::mpc_yaw_expo>(law, 0.69f); },
+     {},
+     from_v1_16_0},
+    {"cascade-ref-w-n-not-read",
+     "reference_model",
+     Stage::parameters,
+     "does not read MC_REF_W_N",
+     "another value",
+     not_read,
+     [](FaultyLaw& law) { keep_at<&P::mc_ref_w_n>(law, 50.0f); },
+     {},
+     from_v1_18},
+    {"cascade-ref-ff-max-not-read",
+     "reference_model",
+     Stage::parameters,
+     "does not read MC_REF_FF_MAX",
+     "another value",
+     not_read,
+     [](FaultyLaw& law) { keep_at<&P::mc_ref_ff_max>(law, 100.0f); },
+     {},
+     from_v1_18},
+    {"cascade-ref-ff-max-default-0",
+     "reference_model",
+     Stage::parameters,
+     "has the default 0 for MC_REF_FF_MAX: no limit",
+     "MC_REF_FF and a fast setpoint",
+     "a wrong default",
+     [](FaultyLaw& law) { change_default<&P::mc_ref_ff_max>(law, 0.0f); },
+     {},
+     from_v1_18},
 };
 
 }  // namespace

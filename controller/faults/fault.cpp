@@ -9,7 +9,7 @@ namespace attest::faults {
 
 std::string_view name_of(Stage stage) {
   // In the order of the enumerators.
-  constexpr std::array<std::string_view, 35> names{"input",
+  constexpr std::array<std::string_view, 36> names{"input",
                                                    "tilt",
                                                    "yaw",
                                                    "blend",
@@ -43,6 +43,7 @@ std::string_view name_of(Stage stage) {
                                                    "autotune",
                                                    "saturation",
                                                    "yaw filter",
+                                                   "reference model",
                                                    "elementary functions"};
   return names[static_cast<std::size_t>(stage)];
 }
@@ -72,6 +73,7 @@ struct Subject {
 constexpr auto from_v1_5_5 = mc_att_control::from_v1_5_5;
 constexpr auto cascades = cascade::all_profiles;
 constexpr auto from_v1_16_0 = cascade::from_v1_16_0;
+constexpr auto from_v1_18 = cascade::from_v1_18;
 
 // In the order of the catalogue.
 std::vector<Subject> subjects() {
@@ -100,8 +102,13 @@ std::vector<Subject> subjects() {
           {in_cascade::large_angle_faults(), cascades},
           {in_cascade::yaw_weight_faults(), cascades},
           {in_cascade::yaw_feed_forward_faults(), cascade::until_v1_17},
+          {in_cascade::model_faults(), from_v1_18},
+          {in_cascade::model_yaw_faults(), from_v1_18},
+          {in_cascade::model_forward_faults(), from_v1_18},
+          {in_cascade::model_state_faults(), from_v1_18},
           {in_cascade::stick_faults(), cascades},
           {in_cascade::yaw_lock_faults(), from_v1_16_0},
+          {in_cascade::lost_heading_faults(), from_v1_18},
           {in_cascade::throttle_faults(), cascades},
           {in_cascade::spool_up_faults(), cascade::from_v1_15_4},
           {in_cascade::reset_faults(), cascades},

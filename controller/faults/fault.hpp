@@ -54,6 +54,7 @@ enum class Stage {
   autotune,
   saturation,
   yaw_filter,
+  reference_model,
   functions,  // elementary/elementary.hpp; of no fault of the catalogue
 };
 std::string_view name_of(Stage stage);  // "integrator gate"

@@ -44,6 +44,7 @@ struct ModelStages {
   using Law = cascade::ReferenceModelStages<Scalar>;
   using LawGains = cascade::ReferenceModelGains<Scalar>;
   using Decay = cascade::ModelDecay<Scalar>;
+  std::function<bool(std::uint64_t)> is_first = Law::is_first;
   std::function<Scalar(std::uint64_t)> elapsed = Law::elapsed;
   std::function<Vector(const Quat&)> world_z = Law::world_z;
   std::function<Vector(const Vector&, Scalar)> command = Law::command;

@@ -48,6 +48,7 @@ StageSet visible_stages(faults::Stage stage) {
     case In::limit:
     case In::feed_forward:
     case In::recovery:
+    case In::reference_model:
     case In::autotune:
       return only(Stage::attitude_law);
     case In::weathervane:  // resets the yaw integral, too
