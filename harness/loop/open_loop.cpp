@@ -1,7 +1,6 @@
 #include "harness/loop/open_loop.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <memory>
 #include <set>
 #include <span>
@@ -240,9 +239,8 @@ class Many {
     const auto unit = make(judged_exists);
     if (!unit) return unit.error();
     UnitDriver driver(**unit, subject_.module);
-    auto fault = driver.step(tick_, {}, trace_.samples[tick_]);
-    ++tick_;
-    return fault;
+    const std::size_t tick = tick_++;
+    return driver.step(tick, {}, trace_.samples[tick]);
   }
 
  private:
@@ -317,9 +315,11 @@ std::optional<PortFault> PartDriver::drive(Trace& part, std::size_t first_tick) 
 
 ModuleUnderTest subject_of(const Case& the_case) {
   ModuleUnderTest subject{the_case.profile, the_case.module, the_case.mixer, the_case.instances};
-  if (the_case.instances != Instances::other_profiles) return subject;
-  std::ranges::remove_copy(the_case.profiles, std::back_inserter(subject.other_profiles),
-                           the_case.profile);
+  if (the_case.instances != Instances::other_profiles || the_case.profiles.empty()) return subject;
+  auto& others = subject.other_profiles = the_case.profiles;
+  std::erase(others, the_case.profile);
+  // The oldest comes first, unless it is the judged one: neighbours may have the same law.
+  if (the_case.profile != the_case.profiles.back()) std::ranges::rotate(others, others.end() - 1);
   return subject;
 }
 

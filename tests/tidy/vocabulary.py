@@ -12,7 +12,6 @@ INSTEAD = {
     "are told": "`receive`, `are given` or `are reported`",
     "is blamed": "`is attributed to`",
     "alike": "`the same way`, `equally` or `both`",
-    "as of": "`same as`",
     "nothing at all": "the empty value itself",
     "that is none": "`invalid`, `missing` or `not a ...`",
     "by turns": "`alternately`",
