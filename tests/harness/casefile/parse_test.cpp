@@ -40,14 +40,15 @@ std::vector<std::string> profiles_in(const std::string& folder, const std::strin
 }
 
 TEST(ParseCase, TheProfileOfItsFolderComesFirstAndTheOthersNewestFirst) {
-  constexpr const char *v1_14 = "px4-v1.14.4", *v1_15 = "px4-v1.15.4", *v1_16 = "px4-v1.16.0";
+  constexpr const char *v1_14 = "px4-v1.14.4", *v1_15 = "px4-v1.15.4", *v1_16 = "px4-v1.16.0",
+                       *v1_17 = "px4-v1.17", *v1_18 = "px4-v1.18";
   const std::string since = "since = \"px4-v1.14.4\"\n", until = "until = \"px4-v1.15.4\"\n";
-  EXPECT_THAT(profiles_in(v1_16, since), ElementsAre(v1_16, v1_15, v1_14));
-  EXPECT_THAT(profiles_in(v1_15, since), ElementsAre(v1_15, v1_16, v1_14));
-  EXPECT_THAT(profiles_in(v1_14, since), ElementsAre(v1_14, v1_16, v1_15));
+  EXPECT_THAT(profiles_in(v1_16, since), ElementsAre(v1_16, v1_18, v1_17, v1_15, v1_14));
+  EXPECT_THAT(profiles_in(v1_15, since), ElementsAre(v1_15, v1_18, v1_17, v1_16, v1_14));
+  EXPECT_THAT(profiles_in(v1_14, since), ElementsAre(v1_14, v1_18, v1_17, v1_16, v1_15));
   EXPECT_THAT(profiles_in(v1_14, since + until), ElementsAre(v1_14, v1_15));
   EXPECT_THAT(profiles_in(v1_15, until), ElementsAre(v1_15, v1_14));
-  EXPECT_THAT(profiles_in(v1_16, "since = \"px4-v1.16.0\"\n"), ElementsAre(v1_16));
+  EXPECT_THAT(profiles_in(v1_16, "since = \"px4-v1.16.0\"\n"), ElementsAre(v1_16, v1_18, v1_17));
   EXPECT_THAT(
       profiles_in(v1_15, "profiles = [\"px4-v1.14.4\", \"px4-v1.16.0\", \"px4-v1.15.4\"]\n"),
       ElementsAre(v1_15, v1_16, v1_14));
