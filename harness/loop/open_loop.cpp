@@ -319,7 +319,7 @@ ModuleUnderTest subject_of(const Case& the_case) {
   auto& others = subject.other_profiles = the_case.profiles;
   std::erase(others, the_case.profile);
   // The oldest comes first, unless it is the judged one: neighbours may have the same law.
-  if (the_case.profile != the_case.profiles.back()) std::ranges::rotate(others, others.end() - 1);
+  if (the_case.profile != the_case.profiles.back()) std::swap(others.front(), others.back());
   return subject;
 }
 
