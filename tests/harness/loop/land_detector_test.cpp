@@ -48,7 +48,7 @@ class LandDetectorTest : public testing::Test {
     return after_1_s.landed;
   }
 
-  const PlantState standing_;
+  const PlantState standing_{};
   LandDetector detector_{flight(false), Rate::hz(1000)};
 };
 
