@@ -23,9 +23,9 @@ namespace {
 
 constexpr const char* description =
     "Tests whether a port of PX4's multicopter attitude and rate control behaves as the original\n"
-    "does. The releases are v1.3.4, v1.5.5, v1.14.4 to v1.16.0, v1.17 and v1.18. The report names "
-    "the\n"
-    "first deviation: its tick, its signal and the stage of the law.\n";
+    "does. The releases are v1.3.4, v1.5.5 and v1.14 to v1.18. The report names the first "
+    "deviation:\n"
+    "its tick, its signal and the stage of the law.\n";
 
 constexpr const char* footer =
     "\nFirst steps (`attest help COMMAND` has more):\n"

@@ -88,7 +88,7 @@ void add_strictness(Command command, RunOptions& options) {
       .option("--level", options.level,
               "How outputs are compared: `exact` (float32 bits), `numeric` (a tolerance for "
               "each signal) or `events` (events at most one tick apart, values within wide "
-              "bounds); flights at `numeric` instead")
+              "bounds; flights as at `numeric`)")
       .type("LEVEL")
       .shows_default()
       .group(option_group::strictness);

@@ -83,7 +83,7 @@ TEST(ReferenceModel, FeedsTheYawRateForwardWhateverItsShare) {
 }
 
 // While a yaw rate is commanded, the model does not feed its own yaw forward.
-TEST(ReferenceModel, HasNoYawOfItsOwnBesideACommandedOne) {
+TEST(ReferenceModel, FeedsNoYawOfItsOwnForwardDuringACommandedOne) {
   const Q turned = yaw_rotation(0.3);
   for (const double still : {0.0, 1e-8, double(NAN)}) {
     Model model(20);

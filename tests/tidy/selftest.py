@@ -105,7 +105,8 @@ EXAMPLES = {
         ({"a.cpp": 'f("both turn "\n  "by "\n "turns");'}, {"a.cpp": "by_turns(turns);\n"}),
         ({"ci/check": "# lasts for\n# ever\n"}, {"ci/check": "for each of ever more\n"}),
         ({"a.bats": '@test "All the same" {'}, {"LICENSE": "alike", "b/LICENSE": "alike"}),
-        ({"golden/a.toml": "by turns"}, {"golden/a/b/provenance.toml": "by turns"}),
+        ({"golden/a.toml": "as of"}, {"golden/a/b/provenance.toml": "as of"}),
+        ({"a.md": "as of the law"}, {"a.md": "the law as of v1.17"}),
     ],
     "no_machine_paths": [
         ({"README.md": "run `/ho" "me/me/attest`"}, {"README.md": "see build/work/a, ../tmp/b"}),

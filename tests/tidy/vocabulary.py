@@ -12,6 +12,7 @@ INSTEAD = {
     "are told": "`receive`, `are given` or `are reported`",
     "is blamed": "`is attributed to`",
     "alike": "`the same way`, `equally` or `both`",
+    "as of": "`same as`",
     "nothing at all": "the empty value itself",
     "that is none": "`invalid`, `missing` or `not a ...`",
     "by turns": "`alternately`",
@@ -21,7 +22,9 @@ INSTEAD = {
 # Line breaks, markers of comments and the quotes of adjacent string literals do not hide a phrase.
 _BETWEEN = r'[\s/*#>"+-]+'
 _PHRASES = "|".join(_BETWEEN.join(phrase.split()) for phrase in INSTEAD)
-PATTERN = re.compile(rf"\b(?:{_PHRASES})\b", re.IGNORECASE)
+# "as of" is right with a date or the name of a version, which may be a placeholder.
+_VERSION = r"(?<=as of)\s(?:v\d|branch\b|\{)"
+PATTERN = re.compile(rf"\b(?:{_PHRASES})\b(?!{_VERSION})", re.IGNORECASE)
 
 
 def phrase_of(match: re.Match) -> str:
