@@ -45,7 +45,7 @@ CONTROLLERS = REFERENCES + [
 ]
 CASCADES = REFERENCES + [
     ("right_cascade_quaternion", "swing and twist of the error quaternion, other orders of sums"),
-    ("right_cascade_polynomial", "polynomial sin, cos, asin, acos and atan2, right to 2e-7"),
+    ("right_cascade_polynomial", "polynomial sin, cos, asin, acos, exp and atan2, right to 2e-7"),
     ("right_cascade_fixed_point", "fixed point, 32 bits behind the point"),
     ("right_cascade_fixed_22", "fixed point, 22 bits, judged as one"),
 ]
@@ -64,7 +64,13 @@ LAWS = {
         },
     },
     "cascade": {
-        "tables": [["px4-v1.16.0"], ["px4-v1.15.4"], ["px4-v1.14.4"]],
+        "tables": [
+            ["px4-v1.18"],
+            ["px4-v1.17"],
+            ["px4-v1.16.0"],
+            ["px4-v1.15.4"],
+            ["px4-v1.14.4"],
+        ],
         "ports": CASCADES,
         "kinds": {
             "thrust": ["thrust"],
