@@ -203,9 +203,9 @@ Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, Run
   plan.run.timing = options.timing;
   name_files({{flight->the_case, {}}}, suite, plan.run);
   plan.run.rates = {flight->timing.configuration.rate};
-  plan.jobs.push_back(
-      std::make_unique<TimedJob>(std::move(flight->the_case), std::move(flight->timing),
-                                 std::move(flight->vehicle_model), options.save_traces, plan.host));
+  plan.jobs.push_back(std::make_unique<TimedJob>(
+      std::move(flight->the_case), std::move(flight->timing), std::move(flight->vehicle_model),
+      JudgeOptions{plan.run.level, options.save_traces}, plan.host));
   return {};
 }
 

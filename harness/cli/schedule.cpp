@@ -79,7 +79,7 @@ Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder
   in_time.ticks = flight_timing(the_case, configuration.rate);
   for (const TimingFile& timing : {in_time, plan.scheduled}) {
     plan.flights.push_back(std::make_unique<TimedJob>(the_case, timing, chosen->vehicle_model,
-                                                      std::filesystem::path(), plan.host));
+                                                      JudgeOptions{}, plan.host));
   }
   plan.set = std::move(*set);
   plan.jobs = std::move(*jobs);

@@ -104,7 +104,7 @@ Result<VectorResult> TimedJob::run(std::size_t) {
   const auto host = start_host(options_, {&case_, vehicle_model_.get()});
   if (!host) return tl::unexpected(host.error());
   return evaluate_timed_flight(case_, timing_.configuration, *vehicle_model_, timing_.ticks, **host,
-                               saved_traces_);
+                               judge_);
 }
 
 namespace {

@@ -73,12 +73,12 @@ class CaseJob final : public PortJob<VectorResult> {
 class TimedJob final : public PortJob<VectorResult> {
  public:
   TimedJob(Case the_case, TimingFile timing, std::shared_ptr<const VehicleModel> vehicle_model,
-           std::filesystem::path saved_traces, HostOptions options)
+           JudgeOptions judge, HostOptions options)
       : PortJob(std::move(options)),
         case_(std::move(the_case)),
         timing_(std::move(timing)),
         vehicle_model_(std::move(vehicle_model)),
-        saved_traces_(std::move(saved_traces)) {}
+        judge_(std::move(judge)) {}
 
   std::size_t size() const override { return 1; }
   Result<VectorResult> run(std::size_t task) override;
@@ -87,7 +87,7 @@ class TimedJob final : public PortJob<VectorResult> {
   Case case_;
   TimingFile timing_;
   std::shared_ptr<const VehicleModel> vehicle_model_;
-  std::filesystem::path saved_traces_;
+  JudgeOptions judge_;
 };
 
 // The jobs of the selected cases, in the order of the cases. An open-loop case is one job, or

@@ -49,7 +49,7 @@ Result<VectorResult> evaluate_flight(const Case& the_case, const RunConfiguratio
                                      const VehicleModel& vehicle_model, const Golden& golden,
                                      PortHost& host, const JudgeOptions& options = {});
 
-// The same at the level numeric at recorded times, for which no golden exists. The flight of the
+// The same at recorded times, for which no golden exists. The flight of the
 // reference at the same times takes the place of the golden. A bound that the reference violates in
 // that flight is not applied. Errors: the flight cannot be set up; the reference loses the vehicle
 // at these times.
@@ -57,7 +57,7 @@ Result<VectorResult> evaluate_timed_flight(const Case& the_case,
                                            const RunConfiguration& configuration,
                                            const VehicleModel& vehicle_model,
                                            const FlightTiming& timing, PortHost& host,
-                                           const std::filesystem::path& saved_traces = {});
+                                           const JudgeOptions& options = {});
 
 // "the flight ended at 0.412 s (tick 103): the body rate is 81 rad/s, beyond 80". REQUIRES:
 // Flown::divergence is set.

@@ -277,7 +277,7 @@ Result<VectorResult> evaluate_timed_flight(const Case& the_case,
                                            const RunConfiguration& configuration,
                                            const VehicleModel& vehicle_model,
                                            const FlightTiming& timing, PortHost& host,
-                                           const std::filesystem::path& saved_traces) {
+                                           const JudgeOptions& options) {
   VectorResult result = result_for(the_case, configuration);
   if (has_other_steps(host.declarations(), the_case, configuration.rate.motor_unit, timing, result))
     return result;
@@ -290,8 +290,7 @@ Result<VectorResult> evaluate_timed_flight(const Case& the_case,
     if (value < metric.min) metric.min = -std::numeric_limits<double>::infinity();
     if (value > metric.max) metric.max = std::numeric_limits<double>::infinity();
   }
-  return evaluate_with({&relaxed, &vehicle_model}, plan, *reference, host,
-                       {.save_traces = saved_traces});
+  return evaluate_with({&relaxed, &vehicle_model}, plan, *reference, host, options);
 }
 
 }  // namespace attest

@@ -121,6 +121,19 @@ TEST_F(Company, OtherProfilesTakeTurnsFromBeforeTheJudgedOn) {
                           "create 3 second", "step 3 -0.53", "destroy 3", "step 2 1", "destroy 2"));
 }
 
+// Profiles next to each other may have the same law.
+TEST(SubjectOf, TheOldestOtherProfileIsTheFirstUnlessItIsJudged) {
+  Case the_case;
+  the_case.instances = Instances::other_profiles;
+  the_case.profiles = {"middle", "newest", "oldest"};
+  const auto others = [&](const std::string& judged) {
+    return subject_of(the_case.in_profile(judged)).other_profiles;
+  };
+  EXPECT_THAT(others("middle"), ElementsAre("oldest", "newest"));
+  EXPECT_THAT(others("newest"), ElementsAre("oldest", "middle"));
+  EXPECT_THAT(others("oldest"), ElementsAre("middle", "newest"));
+}
+
 TEST_F(Company, AProfileThatThePortDoesNotSupportIsReplacedByItsOwn) {
   port_.refused = "first";
   EXPECT_FALSE(drive_with(Instances::other_profiles));

@@ -1,4 +1,5 @@
 // Flights of the reference, which a test then changes.
+#include <cmath>
 #include <functional>
 
 #include <gmock/gmock.h>
@@ -66,8 +67,8 @@ class EvaluateFlight : public testing::Test {
     case_.flight->metrics = {metric_};
     ChangedFlight host({&case_, iris_.get()}, change);
     host.declarations_.fraction_bits = bits;
-    auto result = evaluate_timed_flight(case_, at_50, *iris_,
-                                        case_timing(case_, at_50.rate.motor_unit), host);
+    auto result = evaluate_timed_flight(
+        case_, at_50, *iris_, case_timing(case_, at_50.rate.motor_unit), host, {.level = level_});
     EXPECT_TRUE(result) << result.error().to_string();
     return result ? *std::move(result) : VectorResult{};
   }
@@ -84,6 +85,7 @@ class EvaluateFlight : public testing::Test {
   Case case_;
   std::shared_ptr<const VehicleModel> iris_;
   Metric metric_;
+  Level level_ = Level::numeric;
 };
 
 TEST_F(EvaluateFlight, AMetricMayBeOffByTheLargerOfItsTolerances) {
@@ -146,6 +148,26 @@ TEST_F(EvaluateFlight, ATraceOfAnotherFlightIsAFaultOfThePort) {
   const VectorResult result = result_of([](Trace& flown) { ++flown.samples[95].in.timestamp; });
   EXPECT_EQ(result.verdict, Verdict::protocol);
   EXPECT_THAT(result.reason, HasSubstr("timestamp at tick 95"));
+}
+
+TEST_F(EvaluateFlight, OneBitDeviatesOnlyAtTheLevelExact) {
+  const auto result_at = [this](Level level) {
+    level_ = level;
+    return result_of([](Trace& flown) {
+      float& roll = flown.samples[40].out.vehicle_rates_setpoint.roll;
+      roll = std::nextafter(roll, 10.0f);
+    });
+  };
+  for (const Level level : {Level::numeric, Level::events}) {
+    const VectorResult result = result_at(level);
+    EXPECT_EQ(result.verdict, Verdict::pass);
+    EXPECT_EQ(result.compared, Level::numeric);
+  }
+  const VectorResult exact = result_at(Level::exact);
+  EXPECT_EQ(exact.verdict, Verdict::fail);
+  EXPECT_EQ(exact.compared, Level::exact);
+  ASSERT_TRUE(exact.first);
+  EXPECT_EQ(exact.first->tick, 40u);
 }
 
 // Beyond the horizon, where the golden's rows do not apply: for a port with 22 bits that is every
