@@ -14,7 +14,7 @@ install(TARGETS attest_unit EXPORT attestTargets)
 install(TARGETS attest_elementary EXPORT attestTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS attest EXPORT attestTargets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(FILES controller/attest_unit.h controller/attest_actuation.h controller/attest_cascade.h
-              controller/attest_math.h
+              controller/attest_law.h controller/attest_math.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY cases golden models DESTINATION ${ATTEST_INSTALL_DATADIR})
 # Excludes the results of builds in the source tree.
@@ -25,7 +25,7 @@ install(
   REGEX "/(build|target|__pycache__)$" EXCLUDE)
 # For `attest new-port`.
 install(FILES controller/attest_unit.h controller/attest_actuation.h controller/attest_cascade.h
-              controller/attest_math.h
+              controller/attest_law.h controller/attest_math.h
         DESTINATION ${ATTEST_INSTALL_DATADIR}/include)
 install(FILES ci/examples/github-action.yml ci/examples/github-actions.yml
               ci/examples/gitlab-ci.yml

@@ -116,6 +116,7 @@ class RateLaw {
   void set_gains(const RateGains<Scalar>& gains) { gains_ = gains; }
 
   void set_saturation(const Allocation& status) { saturation_ = stages_.saturation(status); }
+  void set_saturation(const Saturation& flags) { saturation_ = flags; }
 
   void reset_integral() { integral_.setZero(); }
 

@@ -8,6 +8,7 @@
 
 #include "controller/attest_cascade.h"
 #include "controller/cascade/attitude_unit.hpp"
+#include "controller/cascade/law_table.hpp"
 #include "controller/cascade/profile.hpp"
 #include "controller/cascade/rate_unit.hpp"
 
@@ -46,7 +47,7 @@ template <typename Scalar>
 using RateUnitTable =
     UnitTable<attest_rate_unit, RateUnit<Scalar>, attest_rate_inputs, attest_rate_outputs>;
 
-// extension() of a port that has both units.
+// extension() of a port that has both units and the laws of every profile.
 template <typename Scalar>
 const void* extension(const char* id) noexcept {
   if (id == nullptr) return nullptr;
@@ -54,6 +55,8 @@ const void* extension(const char* id) noexcept {
     return &AttitudeUnitTable<Scalar>::table;
   }
   if (std::strcmp(id, ATTEST_EXTENSION_RATE_UNIT) == 0) return &RateUnitTable<Scalar>::table;
+  if (std::strcmp(id, ATTEST_EXTENSION_ATTITUDE_LAW) == 0) return &AttitudeLawTable<Scalar>::table;
+  if (std::strcmp(id, ATTEST_EXTENSION_RATE_LAW) == 0) return &RateLawTable<Scalar>::table;
   return nullptr;
 }
 

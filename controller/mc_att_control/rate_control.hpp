@@ -117,6 +117,12 @@ class RateControl {
   // REQUIRES: set_gains() was called.
   Vector3<Scalar> update(const RateInput<Scalar>& in);
 
+  // Replaces what the last update() was given.
+  void set_previous(const Vector3<Scalar>& rates, const Vector3<Scalar>& rates_sp) {
+    rates_prev_ = rates;
+    rates_sp_prev_ = rates_sp;
+  }
+
   void reset_yaw_integral() { integral_[2] = Scalar(0); }
 
   const Vector3<Scalar>& integral() const { return integral_; }

@@ -7,7 +7,7 @@
 namespace attest {
 namespace {
 
-enum class Of { every_module, controller, cascade };
+enum class Of { every_module, controller, cascade, laws };
 
 struct Row {
   std::string_view name;
@@ -26,7 +26,7 @@ constexpr Row rows[] = {
     {"in/vehicle_attitude_setpoint.q_d[0]", 1},
     {"in/vehicle_attitude_setpoint.thrust", 0.5, 1},
     {"in/vehicle_attitude_setpoint.thrust_body[2]", -0.5, -1},
-    {"in/vehicle_rates_setpoint.thrust", 0, 1},
+    {"in/vehicle_rates_setpoint.thrust", 0, 1, Of::controller},
     {"in/vehicle_rates_setpoint.thrust_body[2]", -0.5, -1},
     {"in/manual_control_setpoint.z", 0.5, 1},
     {"in/battery_status.scale", 1},
@@ -49,12 +49,44 @@ constexpr Row rows[] = {
     {"in/battery.voltage_v", 12.15},
     {"in/battery.throttle", 0.5},
     {"in/battery.armed", 1},
+    // Gains of the pure laws: the defaults of v1.16.0 and v1.18, those of the old laws of v1.5.5. A
+    // limit is far from the rates of small errors.
+    {"in/attitude_gains.p[0]", 6.5},
+    {"in/attitude_gains.p[1]", 6.5},
+    {"in/attitude_gains.p[2]", 2.8},
+    {"in/attitude_gains.rate_max[0]", 3.84},
+    {"in/attitude_gains.rate_max[1]", 3.84},
+    {"in/attitude_gains.rate_max[2]", 3.49},
+    {"in/attitude_gains.yaw_weight", 0.4},
+    {"in/attitude_gains.yaw_ff", 0.5},
+    {"in/attitude_gains.weathervane_scale", 0.15},
+    {"in/attitude_gains.ref_w_n", 50},
+    {"in/attitude_gains.ref_ff_max", 1.75},
+    {"in/rate_gains.p[0]", 0.15},
+    {"in/rate_gains.p[1]", 0.15},
+    {"in/rate_gains.p[2]", 0.2},
+    {"in/rate_gains.i[0]", 0.2},
+    {"in/rate_gains.i[1]", 0.2},
+    {"in/rate_gains.i[2]", 0.1},
+    {"in/rate_gains.d[0]", 0.003},
+    {"in/rate_gains.d[1]", 0.003},
+    {"in/rate_gains.integral_max[0]", 0.3},
+    {"in/rate_gains.integral_max[1]", 0.3},
+    {"in/rate_gains.integral_max[2]", 0.3},
+    {"in/rate_gains.tpa_break", 1},
+    {"in/law.dt", 0.004},
+    {"in/vehicle_rates_setpoint.thrust", 0.5, {}, Of::laws},
 };
 
+Of kind_of(const ModuleInfo& info) {
+  if (info.profiles == Profiles::all) return Of::laws;
+  return info.is_of_cascade() ? Of::cascade : Of::controller;
+}
+
 Row row_of(const Channel& channel) {
-  const Of other = info_of(channel.module).is_of_cascade ? Of::controller : Of::cascade;
+  const Of kind = kind_of(info_of(channel.module));
   const auto* const found = std::find_if(std::begin(rows), std::end(rows), [&](const Row& row) {
-    return row.name == channel.name && row.of != other;
+    return row.name == channel.name && (row.of == Of::every_module || row.of == kind);
   });
   return found == std::end(rows) ? Row{channel.name, 0} : *found;
 }

@@ -65,11 +65,11 @@ const std::array<std::string_view, 6>& flag_names(Module module) {
       "flag_control_manual_enabled",   "flag_control_altitude_enabled",
       "flag_control_velocity_enabled", "flag_control_position_enabled",
       "flag_control_attitude_enabled", "flag_control_rates_enabled"};
-  return info_of(module).is_of_cascade ? of_cascade : of_controller;
+  return info_of(module).is_of_cascade() ? of_cascade : of_controller;
 }
 
 std::span<const FlightMode> flight_modes(Module module) {
-  return info_of(module).is_of_cascade ? modes_of_cascade() : modes_of_controller();
+  return info_of(module).is_of_cascade() ? modes_of_cascade() : modes_of_controller();
 }
 
 std::array<std::uint8_t, 6> FlightMode::flags_in_transition() const {

@@ -191,7 +191,7 @@ std::string case_name(const Trace& log, const LogPart& part) {
   if (std::isfinite(part.to_s)) name += fmt::format("_to_{}s", part.to_s);
   // A log of the cascade becomes one case for each unit, so the name has the unit.
   const Module module = module_of(log.present);
-  if (info_of(module).is_of_cascade) name += fmt::format("_{}", name_of(module));
+  if (info_of(module).is_of_cascade()) name += fmt::format("_{}", name_of(module));
   return identifier(name);
 }
 
@@ -261,7 +261,7 @@ Result<LogCase> case_of_log(const Trace& log, const std::string& profile, const 
   toml.set("", "schema", schema_version);
   toml.set("", "profiles", std::vector<std::string>{profile});
   toml.set("", "group", log_case_group);
-  if (info_of(ticks->module).is_of_cascade) toml.set("", "module", name_of(ticks->module));
+  if (info_of(ticks->module).is_of_cascade()) toml.set("", "module", name_of(ticks->module));
   toml.set("", "why", reason(*ticks, notes));
   toml.set("", "duration_s", made.duration_s);
   toml.set("unit", "start_s", seconds((*ticks)[ticks->begin].in.timestamp));

@@ -135,7 +135,7 @@ void parse_flight_mode(const TomlTable& table, Module module, TopicStimulus& top
   }
   const auto sequence = parse_modes(table, key, module);
   if (!sequence) return;
-  const bool has_transition = !info_of(module).is_of_cascade;
+  const bool has_transition = !info_of(module).is_of_cascade();
   const auto transition = has_transition ? parse_in_transition(table) : std::nullopt;
   const auto& flags = flag_names(module);
   for (FieldStimulus& field : topic.fields) {

@@ -50,7 +50,7 @@ class Publisher {
     const auto release = every_tick_ ? std::optional(visible) : releases_.latest(visible);
     if (!release || (published_ && *release <= *published_)) return;
     published_ = release;
-    sample.in.updated |= topic_.updated_bit;
+    if (topic_.updated_bit != 0) sample.in.updated |= topic_.updated_bit;
     for (const Field& field : fields_) field.write(*release, sample);
     for (const Attitude& attitude : attitudes_) attitude.write(*release, sample);
   }
@@ -187,17 +187,17 @@ class ParameterPublisher {
     }
   }
 
-  void tick(std::size_t tick, Nanoseconds now, Sample& sample,
-            std::vector<ParameterChange>& changes) {
-    // parameter_update is published once when the firmware starts.
-    if (tick == 0) sample.in.updated |= ATTEST_UPDATED_PARAMETER_UPDATE;
+  // Adds the parameters that change. Returns whether parameter_update is published: with each
+  // change, and once when the firmware starts.
+  bool tick(std::size_t tick, Nanoseconds now, std::vector<ParameterChange>& changes) {
+    const std::size_t before = changes.size();
     for (Entry& entry : entries_) {
       const auto value = static_cast<float>(entry.sampler.at(now));
       if (entry.last && same_bits(*entry.last, value)) continue;
       entry.last = value;
       changes.push_back({tick, entry.name, value});
-      sample.in.updated |= ATTEST_UPDATED_PARAMETER_UPDATE;
     }
+    return tick == 0 || changes.size() > before;
   }
 
  private:
@@ -268,10 +268,11 @@ std::uint64_t Stimulus::timestamp_us(Nanoseconds time) const {
 void Stimulus::tick(std::size_t tick, Nanoseconds now, Sample& sample,
                     std::vector<ParameterChange>& changes) {
   sample.in.timestamp = timestamp_us(now);
-  sample.in.updated = 0;
+  const bool has_bits = info_of(impl_->module).is_unit();
+  if (has_bits) sample.in.updated = 0;
   for (Publisher& publisher : impl_->publishers) publisher.tick(now, sample);
-  impl_->parameters.tick(tick, now, sample, changes);
-  if (!info_of(impl_->module).is_unit()) sample.in.updated = 0;
+  const bool is_update = impl_->parameters.tick(tick, now, changes);
+  if (has_bits && is_update) sample.in.updated |= ATTEST_UPDATED_PARAMETER_UPDATE;
 }
 
 namespace {

@@ -86,8 +86,8 @@ void lay_out(const Parts& parts, const Language& language, const fs::path& folde
   copy_starter(parts.starter, folder);
   if (language.has_headers) {
     fs::create_directories(folder / "include");
-    for (const char* header :
-         {"attest_unit.h", "attest_actuation.h", "attest_cascade.h", "attest_math.h"}) {
+    for (const char* header : {"attest_unit.h", "attest_actuation.h", "attest_cascade.h",
+                               "attest_law.h", "attest_math.h"}) {
       fs::copy_file(parts.headers / header, folder / "include" / header);
     }
   }

@@ -28,17 +28,19 @@ struct TimeCommandOptions {
   std::string html, json;
 };
 
-// The open-loop cases of units. Flights are left out: their steps cannot be repeated without a new
-// flight, and do not differ in kind from those in open loop.
+bool is_timed(const ModuleInfo& info) { return info.is_unit() || info.is_law(); }
+
+// The open-loop cases of units and laws. Flights are left out: their steps cannot be repeated
+// without a new flight, and do not differ in kind from those in open loop.
 Result<std::vector<SelectedCase>> open_loop_cases(const TimeCommandOptions& options,
                                                   const SuiteFolder& suite) {
   auto cases = options.select.cases_in(suite.case_folders());
   if (!cases) return cases;
   std::erase_if(*cases, [](const SelectedCase& one) {
-    return one.the_case.flight || !info_of(one.the_case.module).is_unit();
+    return one.the_case.flight || !is_timed(info_of(one.the_case.module));
   });
   if (cases->empty())
-    return fail("no open-loop case of a unit is selected, and only these can be timed");
+    return fail("no open-loop case of a unit or law is selected, and only these can be timed");
   return cases;
 }
 

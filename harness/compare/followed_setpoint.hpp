@@ -7,7 +7,7 @@
 
 namespace attest {
 
-// Whether the module has an attitude law: the controller and the attitude unit.
+// Whether the module has an attitude law: the controller, the attitude unit and the law alone.
 bool follows_attitude(Module module);
 
 // REQUIRES, for these two functions and for FollowedSetpoint: follows_attitude(module).

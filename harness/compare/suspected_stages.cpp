@@ -40,7 +40,7 @@ StageSet writers_of(const Channel& output, const Sample& want) {
 // Whether the actuators may scale the controls that the rate law computes. Whether they do depends
 // on a parameter, too.
 bool may_be_scaled(const Channel& output, const Sample& want) {
-  if (output.stage != Stage::rate_law) return false;
+  if (output.stage != Stage::rate_law || output.module == Module::rate_law) return false;
   const float scale = output.module == Module::rate_unit ? want.rate_in.battery_status.scale
                                                          : want.in.battery_status.scale;
   return scale > 0 && scale != 1;

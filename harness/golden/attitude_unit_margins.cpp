@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "controller/cascade/attitude_unit_definition.hpp"
+#include "controller/cascade/pure_laws.hpp"
 #include "harness/golden/margin_meters.hpp"
 
 namespace attest {
@@ -161,12 +162,24 @@ struct NotingAttitudeUnit {
 using AttitudeUnitMeter =
     UnitMeter<cascade::AttitudeUnit<double, NotingAttitudeUnit>, NotingAttitudeUnit,
               attest_attitude_inputs, attest_attitude_outputs>;
+using AttitudeLawMeter =
+    UnitMeter<cascade::PureAttitudeLaw<double, NotingAttitudeUnit>, NotingAttitudeUnit,
+              attest_attitude_law_inputs, attest_attitude_law_outputs>;
 
 }  // namespace
 
 std::unique_ptr<MarginMeter> attitude_unit_meter(const std::string& profile) {
   const auto known = cascade::profile_from_name(profile);
-  return known ? std::make_unique<AttitudeUnitMeter>(*known, &Sample::attitude_in) : nullptr;
+  if (!known) return nullptr;
+  return std::make_unique<AttitudeUnitMeter>(
+      *known, [](const Sample& sample) { return &sample.attitude_in; });
+}
+
+std::unique_ptr<MarginMeter> attitude_law_meter(const std::string& profile) {
+  const auto known = cascade::profile_from_name(profile);
+  if (!known) return nullptr;
+  return std::make_unique<AttitudeLawMeter>(
+      *known, [](const Sample& sample) { return &sample.attitude_law.in; });
 }
 
 }  // namespace attest

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "controller/mc_att_control/mc_att_control_definition.hpp"
+#include "controller/mc_att_control/pure_laws.hpp"
 #include "harness/golden/margin_meters.hpp"
 
 namespace attest {
@@ -138,7 +139,8 @@ using LawMeter = UnitMeter<mc_att_control::McAttControl<double, NotingController
 
 class ControllerMeter final : public LawMeter {
  public:
-  explicit ControllerMeter(mc_att_control::Profile profile) : LawMeter(profile, &Sample::in) {}
+  explicit ControllerMeter(mc_att_control::Profile profile)
+      : LawMeter(profile, [](const Sample& sample) { return &sample.in; }) {}
 
  private:
   void measure(std::span<const ParameterChange> changes, const Sample& sample) override {
@@ -151,11 +153,43 @@ class ControllerMeter final : public LawMeter {
   }
 };
 
+using PureAttitudeMeter =
+    UnitMeter<mc_att_control::PureAttitudeLaw<double, NotingController>, NotingController,
+              attest_attitude_law_inputs, attest_attitude_law_outputs>;
+using OldRateLawMeter =
+    UnitMeter<mc_att_control::PureRateLaw<double, NotingController>, NotingController,
+              attest_rate_law_inputs, attest_rate_law_outputs>;
+
+class OldAttitudeLawMeter final : public PureAttitudeMeter {
+ public:
+  explicit OldAttitudeLawMeter(mc_att_control::Profile profile)
+      : PureAttitudeMeter(profile, [](const Sample& sample) { return &sample.attitude_law.in; }) {}
+
+ private:
+  void measure(std::span<const ParameterChange> changes, const Sample& sample) override {
+    note_norm(sample.attitude_law.in.vehicle_attitude.q, notes_);
+    note_norm(sample.attitude_law.in.vehicle_attitude_setpoint.q_d, notes_);
+    PureAttitudeMeter::measure(changes, sample);
+  }
+};
+
 }  // namespace
 
 std::unique_ptr<MarginMeter> controller_meter(const std::string& profile) {
   const auto known = mc_att_control::profile_from_name(profile);
   return known ? std::make_unique<ControllerMeter>(*known) : nullptr;
+}
+
+std::unique_ptr<MarginMeter> old_attitude_law_meter(const std::string& profile) {
+  const auto known = mc_att_control::profile_from_name(profile);
+  return known ? std::make_unique<OldAttitudeLawMeter>(*known) : nullptr;
+}
+
+std::unique_ptr<MarginMeter> old_rate_law_meter(const std::string& profile) {
+  const auto known = mc_att_control::profile_from_name(profile);
+  if (!known) return nullptr;
+  return std::make_unique<OldRateLawMeter>(
+      *known, [](const Sample& sample) { return &sample.rate_law.in; });
 }
 
 }  // namespace attest

@@ -14,24 +14,32 @@ std::unique_ptr<MarginMeter> controller_meter(const std::string& profile);
 std::unique_ptr<MarginMeter> mixer_meter(const std::string& definition);
 std::unique_ptr<MarginMeter> attitude_unit_meter(const std::string& profile);
 std::unique_ptr<MarginMeter> rate_unit_meter(const std::string& profile);
+// Of the pure laws of v1.14 and later, and of those of v1.5.5 and v1.3.4.
+std::unique_ptr<MarginMeter> attitude_law_meter(const std::string& profile);
+std::unique_ptr<MarginMeter> rate_law_meter(const std::string& profile);
+std::unique_ptr<MarginMeter> old_attitude_law_meter(const std::string& profile);
+std::unique_ptr<MarginMeter> old_rate_law_meter(const std::string& profile);
 
-// The meter of a unit: steps the unit in double, with a law that records its distances. `In` and
-// `Out` are the ABI structs of the unit.
+// The meter of a unit or law: steps it in double, with stages that record its distances. `In` and
+// `Out` are its structs of the ABI.
 template <typename Unit, typename NotingLaw, typename In, typename Out>
 class UnitMeter : public MarginMeter {
  public:
-  // `in`: the member of a sample that has the unit's inputs.
+  // `in`: where a sample has the unit's inputs.
   template <typename Profile>
-  UnitMeter(Profile profile, In Sample::*in) : in_(in), unit_(profile, NotingLaw(&notes_)) {}
+  UnitMeter(Profile profile, const In* (*in)(const Sample&))
+      : in_(in), unit_(profile, NotingLaw(&notes_)) {}
 
  protected:
   void measure(std::span<const ParameterChange> changes, const Sample& sample) override {
-    for (const ParameterChange& change : changes) unit_.set_parameter(change.name, change.value);
-    unit_.step(sample.*in_, out_);
+    if constexpr (requires { unit_.set_parameter("", 0.0f); }) {
+      for (const ParameterChange& change : changes) unit_.set_parameter(change.name, change.value);
+    }
+    unit_.step(*in_(sample), out_);
   }
 
  private:
-  In Sample::*in_;
+  const In* (*in_)(const Sample&);
   Unit unit_;
   Out out_{};
 };

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "controller/cascade/pure_laws.hpp"
 #include "controller/cascade/rate_unit_definition.hpp"
 #include "harness/golden/margin_meters.hpp"
 
@@ -71,12 +72,23 @@ struct NotingRateUnit {
 
 using RateUnitMeter = UnitMeter<cascade::RateUnit<double, NotingRateUnit>, NotingRateUnit,
                                 attest_rate_inputs, attest_rate_outputs>;
+using RateLawMeter = UnitMeter<cascade::PureRateLaw<double, NotingRateUnit>, NotingRateUnit,
+                               attest_rate_law_inputs, attest_rate_law_outputs>;
 
 }  // namespace
 
 std::unique_ptr<MarginMeter> rate_unit_meter(const std::string& profile) {
   const auto known = cascade::profile_from_name(profile);
-  return known ? std::make_unique<RateUnitMeter>(*known, &Sample::rate_in) : nullptr;
+  if (!known) return nullptr;
+  return std::make_unique<RateUnitMeter>(*known,
+                                         [](const Sample& sample) { return &sample.rate_in; });
+}
+
+std::unique_ptr<MarginMeter> rate_law_meter(const std::string& profile) {
+  const auto known = cascade::profile_from_name(profile);
+  if (!known) return nullptr;
+  return std::make_unique<RateLawMeter>(*known,
+                                        [](const Sample& sample) { return &sample.rate_law.in; });
 }
 
 }  // namespace attest

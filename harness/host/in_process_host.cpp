@@ -123,7 +123,7 @@ Result<void> InProcessHost::measure_stack(const ModuleUnderTest& subject, Trace 
 
 bool InProcessHost::supports(const std::string& profile) {
   return ports_.run([&] {
-    const bool is_made = makes_unit_of(driven(), profile);
+    const bool is_made = makes_any_of(driven(), profile);
     port_->finish();
     return is_made;
   });

@@ -117,6 +117,7 @@ class Smoke {
   }
 
   bool parameters() {
+    if (info_of(subject_.module).is_law()) return true;  // it has none
     Trace known = inputs_, unknown = inputs_;
     const std::string name = known_parameter(subject_.module);
     known.parameters = {{0, name, 0.5f}};
@@ -171,7 +172,7 @@ bool smoke(const HostOptions& options, const std::string& profile,
   if (known) own = known->modules & (*host)->declarations().modules;
   bool is_good = true;
   for (const ModuleInfo& info : modules()) {
-    if (!contains(own, info.module) || !info.is_unit()) continue;
+    if (!contains(own, info.module) || !(info.is_unit() || info.is_law())) continue;
     is_good = Smoke(options, profile, info.module, report).all() && is_good;
   }
   return is_good;

@@ -10,8 +10,10 @@
 namespace attest {
 namespace {
 
+// A law has no topics: all its inputs are new.
 bool is_new_in_every_step(const Channel& channel) {
-  return channel.topic() == info_of(channel.module).step_topic;
+  const ModuleInfo& info = info_of(channel.module);
+  return info.is_law() || channel.topic() == info.step_topic;
 }
 
 double shaking(std::size_t tick, std::size_t channel) {
@@ -63,7 +65,10 @@ Trace without_numbers(Trace trace, Module module) {
 std::vector<std::string> expected_topics(Module module) {
   switch (module) {
     case Module::attitude_unit:
+    case Module::attitude_law:
       return {"vehicle_rates_setpoint"};
+    case Module::rate_law:
+      return {"vehicle_torque_setpoint", "rate_ctrl_status"};
     case Module::rate_unit:
       return {"vehicle_torque_setpoint", "vehicle_thrust_setpoint"};
     default:

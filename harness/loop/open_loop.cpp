@@ -180,27 +180,27 @@ PortFault no_profile(const ModuleUnderTest& subject) {
           fmt::format("the port does not support profile {}", subject.profile)};
 }
 
-// A port without any module of a profile does not support the profile.
-PortFault lacks_module(const Port& port, const ModuleUnderTest& subject) {
-  const ModuleInfo& info = info_of(subject.module);
-  const ProfileInfo* const profile = find_profile(subject.profile);
-  const bool has_another = profile && (profile->modules & port.modules()).any();
-  if (!info.extension || (profile && !has_another)) return no_profile(subject);
-  return {PortFault::Kind::unsupported, 0,
-          fmt::format("the port has no {} (extension {})", info.title, info.extension)};
-}
-
-// Whether the port makes a unit of another module of the subject's profile. Then it supports the
-// profile, but not the subject's module.
+// Whether the port makes a unit or a law of the subject's profile, which is another module than the
+// subject's. Then it supports the profile, but not the subject's module.
 bool makes_another(Port& port, const ModuleUnderTest& subject) {
   const ProfileInfo* const profile = find_profile(subject.profile);
   if (!profile) return false;
   const auto all = modules();
   return std::any_of(all.begin(), all.end(), [&](const ModuleInfo& info) {
     const bool may_have = contains(profile->modules & port.modules(), info.module);
-    return may_have && info.is_unit() && info.module != subject.module &&
+    return may_have && (info.is_unit() || info.is_law()) && info.module != subject.module &&
            port.create_unit(info.module, subject.profile, "") != nullptr;
   });
+}
+
+PortFault lacks_module(Port& port, const ModuleUnderTest& subject) {
+  const ModuleInfo& info = info_of(subject.module);
+  const bool has_profile =
+      find_profile(subject.profile) ? makes_another(port, subject) : info.extension != nullptr;
+  if (!has_profile) return no_profile(subject);
+  std::string what = fmt::format("the port has no {}", info.title);
+  if (info.extension) what += fmt::format(" (extension {})", info.extension);
+  return {PortFault::Kind::unsupported, 0, what};
 }
 
 PortFault makes_none(Port& port, const ModuleUnderTest& subject) {

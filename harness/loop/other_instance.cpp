@@ -53,6 +53,7 @@ double other_value(const Channel& channel, double value, bool is_even_tick) {
       return 1 - value;
     case Quantity::thrust:
       return 0.75 * value;
+    case Quantity::duration:
     case Quantity::integral:
     case Quantity::scale:
     case Quantity::voltage:

@@ -1,6 +1,7 @@
 #include "harness/port/profiles.hpp"
 
 #include <algorithm>
+#include <initializer_list>
 #include <limits>
 #include <set>
 
@@ -15,27 +16,30 @@
 namespace attest {
 namespace {
 
-// The modules of the law. Without `has_extensions`, only the controller.
-ProfileInfo profile_of(std::string_view name, bool is_of_cascade, bool has_extensions) {
+ProfileInfo profile_of(std::string_view name, std::initializer_list<Profiles> having) {
   ProfileInfo profile{name, {}, {}};
   for (const ModuleInfo& info : modules()) {
-    if (info.is_of_cascade != is_of_cascade || (info.extension && !has_extensions)) continue;
-    profile.modules |= only(info.module);
+    if (std::ranges::find(having, info.profiles) != having.end()) {
+      profile.modules |= only(info.module);
+    }
   }
   return profile;
 }
 
 std::vector<ProfileInfo> make_profiles() {
-  std::vector<ProfileInfo> all;
+  using enum Profiles;
+  std::vector<ProfileInfo> all_profiles;
   for (const mc_att_control::Profile profile : mc_att_control::every_profile) {
     const std::string_view name = mc_att_control::name_of(profile);
-    all.push_back(profile_of(name, false, actuation::is_profile(name.data())));
+    all_profiles.push_back(actuation::is_profile(name.data())
+                               ? profile_of(name, {with_controller, only_v1_5_5, all})
+                               : profile_of(name, {with_controller, all}));
   }
   for (const cascade::Profile profile : cascade::every_profile) {
-    all.push_back(profile_of(cascade::name_of(profile), true, true));
-    all.back().as_of = cascade::traits_of(profile).as_of;
+    all_profiles.push_back(profile_of(cascade::name_of(profile), {with_cascade, all}));
+    all_profiles.back().as_of = cascade::traits_of(profile).as_of;
   }
-  return all;
+  return all_profiles;
 }
 
 // The parameters of `profile` in a table whose rows name their profiles.
@@ -103,20 +107,23 @@ const ProfileInfo* find_profile(std::string_view name) {
 }
 
 std::vector<std::string> profiles_of_law(std::string_view profile) {
+  ModuleSet units;
+  for (const ModuleInfo& info : modules())
+    units[static_cast<std::size_t>(info.module)] = info.is_unit();
   const ProfileInfo* const one = find_profile(profile);
   std::vector<std::string> names;
   for (const ProfileInfo& other : known_profiles()) {
-    if (one && (other.modules & one->modules).any()) names.emplace_back(other.name);
+    if (one && (other.modules & one->modules & units).any()) names.emplace_back(other.name);
   }
   return names;
 }
 
-bool makes_unit_of(Port& port, const std::string& profile) {
+bool makes_any_of(Port& port, const std::string& profile) {
   const ProfileInfo* const known = find_profile(profile);
   const ModuleSet own = (known ? known->modules : only(Module::mc_att_control)) & port.modules();
   const auto all = modules();
   return std::any_of(all.begin(), all.end(), [&](const ModuleInfo& info) {
-    const bool is_asked = contains(own, info.module) && info.is_unit();
+    const bool is_asked = contains(own, info.module) && (info.is_unit() || info.is_law());
     return is_asked && port.create_unit(info.module, profile, "") != nullptr;
   });
 }

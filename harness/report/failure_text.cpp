@@ -73,7 +73,7 @@ std::string indented_distance(const Deviation& deviation, Level level) {
 // Names the unit of the cascade: in a flight both units have ticks, and outputs of the same name.
 std::string of_unit(const Channel& channel) {
   const ModuleInfo& module = info_of(channel.module);
-  return module.is_of_cascade ? fmt::format(", {}", module.title) : "";
+  return module.is_of_cascade() ? fmt::format(", {}", module.title) : "";
 }
 
 std::string first_deviation(const Deviation& deviation, Level level) {

@@ -149,6 +149,8 @@ std::string_view unit_of(Quantity quantity) {
   switch (quantity) {
     case Quantity::time:
       return "us";
+    case Quantity::duration:
+      return "s";
     case Quantity::angle:
       return "rad";
     case Quantity::rate:

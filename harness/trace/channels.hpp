@@ -1,4 +1,4 @@
-// The only table of signals (its rows: module_table.cpp). CSV columns, case keys and report lines
+// The only table of signals (its rows: channel_table.cpp). CSV columns, case keys and report lines
 // all take their names from it. A channel is a member of Sample (or one bit of it), found by its
 // offset, so the table always agrees with the ABI structs.
 //
@@ -29,6 +29,7 @@ enum class ChannelType : std::uint8_t { u64, f32, u8, bit };
 // The kind of value in a channel. It determines the tolerance (compare/tolerance.hpp) and the unit.
 enum class Quantity : std::uint8_t {
   time,                  // us
+  duration,              // s
   flag,                  // 0 false, anything else true
   count,                 // 0..255: a counter or a state
   quaternion,            // dimensionless
@@ -66,7 +67,7 @@ struct Channel {
 // its outputs.
 std::span<const Channel> channels();
 inline constexpr std::size_t timestamp_channel = 0;  // index into channels()
-inline constexpr std::size_t max_channels = 256;     // there are at most so many
+inline constexpr std::size_t max_channels = 320;     // there are at most so many
 using ChannelSet = std::bitset<max_channels>;        // by index into channels()
 
 // Index into channels(); empty when the module has no such name.

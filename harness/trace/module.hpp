@@ -13,6 +13,7 @@
 
 #include "controller/attest_actuation.h"
 #include "controller/attest_cascade.h"
+#include "controller/attest_law.h"
 #include "controller/attest_unit.h"
 
 namespace attest {
@@ -23,9 +24,11 @@ enum class Module : std::uint8_t {
   mixer,
   battery_status,
   attitude_unit,
-  rate_unit
+  rate_unit,
+  attitude_law,
+  rate_law
 };
-inline constexpr auto module_count = static_cast<std::size_t>(Module::rate_unit) + 1;
+inline constexpr auto module_count = static_cast<std::size_t>(Module::rate_law) + 1;
 using ModuleSet = std::bitset<module_count>;
 inline ModuleSet only(Module module) { return ModuleSet().set(static_cast<std::size_t>(module)); }
 inline bool contains(const ModuleSet& set, Module module) {
@@ -55,14 +58,21 @@ inline bool contains(const StageSet& set, Stage stage) {
 // The inputs and outputs of one step of one module. Those of the other modules are zero, except the
 // timestamp in `in`.
 //
-// The units (controller, attitude unit, rate unit) share the memory of their structs, because a
-// sample is of one unit. Their inputs begin with the same members, so `in.timestamp` and
-// `in.updated` are valid for each of them.
+// The units (controller, attitude unit, rate unit) and the pure laws share the memory of their
+// structs, because a sample is of one of them. Their inputs begin with the same members, so
+// `in.timestamp` is valid for each of them, and `in.updated` for each unit.
 struct Sample {
+  template <typename Inputs>
+  struct Timed {
+    std::uint64_t timestamp;  // that of the tick: a law has no clock
+    Inputs in;
+  };
   union {
     attest_inputs in;  // its timestamp is that of mixer and battery estimate, too
     attest_attitude_inputs attitude_in;
     attest_rate_inputs rate_in;
+    Timed<attest_attitude_law_inputs> attitude_law;
+    Timed<attest_rate_law_inputs> rate_law;
   };
   attest_mixer_inputs mixer_in;
   attest_battery_inputs battery_in;
@@ -70,6 +80,8 @@ struct Sample {
     attest_outputs out;
     attest_attitude_outputs attitude_out;
     attest_rate_outputs rate_out;
+    attest_attitude_law_outputs attitude_law_out;
+    attest_rate_law_outputs rate_law_out;
   };
   attest_mixer_outputs mixer_out;
   attest_battery_outputs battery_out;
@@ -111,6 +123,9 @@ struct ModuleAbi {
   int (*step)(const void* table, void* self, const void* in, void* out);
 };
 
+// The profiles that have a module.
+enum class Profiles : std::uint8_t { with_controller, only_v1_5_5, with_cascade, all };
+
 struct ModuleInfo {
   Module module;
   std::string_view name;   // "battery_status"
@@ -120,7 +135,7 @@ struct ModuleInfo {
   ModuleAbi abi;
   std::string_view case_table = {};  // that makes a case one of the module; empty: `module = NAME`
   std::span<const int> default_rates_hz = {};  // of open-loop cases; empty: standard_rates()
-  bool is_of_cascade = false;                  // of v1.14 and later
+  Profiles profiles = Profiles::with_controller;
   // Only of a unit. Its inputs have `updated`: a bit for each topic that is new.
   std::string_view step_topic = {};      // the input that is new at every step, without a bit
   std::string_view setpoint_topic = {};  // the input that the law follows
@@ -128,7 +143,10 @@ struct ModuleInfo {
   Block armed = {};                      // the flag that arms the motors, in the inputs
 
   Block all_inputs() const { return {0, in.offset + in.size}; }  // with the timestamp
+  // A port needs all units of a profile to conform to it. Other modules are optional.
   bool is_unit() const { return !step_topic.empty(); }
+  bool is_law() const { return profiles == Profiles::all; }  // of attest_law.h
+  bool is_of_cascade() const { return profiles == Profiles::with_cascade; }
   // REQUIRES: a unit.
   std::uint64_t sampled_us(const Sample& sample) const {
     return *static_cast<const std::uint64_t*>(sampled.in(sample));

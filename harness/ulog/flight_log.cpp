@@ -244,9 +244,9 @@ class LogReading {
   }
 
   LoggedUnit made(ModuleContents& log) {
-    const LogRules rules = log_.is_of_attest()                   ? LogRules::attest
-                           : info_of(log.module()).is_of_cascade ? LogRules::cascade
-                                                                 : LogRules::controller;
+    const LogRules rules = log_.is_of_attest()                     ? LogRules::attest
+                           : info_of(log.module()).is_of_cascade() ? LogRules::cascade
+                                                                   : LogRules::controller;
     add_notes(log, flight_.notes);
     Sample first = first_sample(log, rules);
     std::vector<std::string> used;

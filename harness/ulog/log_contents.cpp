@@ -87,7 +87,7 @@ class ContentsReader {
   // instance 1 of a setpoint.
   void accept_every_publisher() {
     for (ModuleContents& module : log_.modules) {
-      if (!info_of(module.module()).is_of_cascade) continue;
+      if (!info_of(module.module()).is_of_cascade()) continue;
       for (LogSeries& series : module.series()) series.accept_every_publisher();
     }
   }

@@ -20,7 +20,7 @@ constexpr StateOfChannel states[] = {
 };
 
 std::optional<LogState> state_of(const Channel& channel) {
-  if (!info_of(channel.module).is_of_cascade) return std::nullopt;  // has both flags
+  if (!info_of(channel.module).is_of_cascade()) return std::nullopt;  // has both flags
   const auto* const found =
       std::find_if(std::begin(states), std::end(states),
                    [&](const StateOfChannel& one) { return one.channel == channel.name; });

@@ -168,7 +168,7 @@ std::pair<std::string, std::string> plant_field(std::string_view path, Module mo
   std::string topic(path.substr(0, path.find_first_of(".[")));
   const bool is_known = std::any_of(layout.begin(), layout.end(),
                                     [&](const LogTopic& one) { return one.name == topic; });
-  if (is_known && info_of(module).is_of_cascade) topic += "_groundtruth";
+  if (is_known && info_of(module).is_of_cascade()) topic += "_groundtruth";
   if (dot != path.npos) return {topic, std::string(path.substr(dot + 1))};
   return {topic, fmt::format("value{}", path.substr(std::min(path.find('['), path.size())))};
 }

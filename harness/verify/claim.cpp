@@ -10,7 +10,12 @@
 namespace attest {
 namespace {
 
-bool is_module(const std::string& group) { return group == "mixer" || group == "battery_status"; }
+// Whether the group is of an optional module, such as `mixer`. Its cases are in a group of that
+// name.
+bool is_module(const std::string& group) {
+  const auto module = module_named(group);
+  return module && !info_of(*module).is_unit();
+}
 
 // The number of vectors of a group at a rate. `good`: those that passed, and those that were
 // skipped because they are compared at the exact level only.
