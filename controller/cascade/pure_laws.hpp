@@ -61,7 +61,7 @@ template <typename Scalar, typename Law = RateUnitLaw<Scalar>>
 class PureRateLaw {
  public:
   explicit PureRateLaw(Profile /*all have this law*/, const Law& law = {})
-      : stages_(law.step), law_(law.rate) {}
+      : stages_(law.step), rate_stages_(law.rate), law_(law.rate) {}
 
   void step(const attest_rate_law_inputs& in, attest_rate_law_outputs& out) {
     law_.set_gains(gains(in.rate_gains));
@@ -92,16 +92,25 @@ class PureRateLaw {
     return stages_.gains(parameters).rate;
   }
 
-  static Saturation flags(const Flags& given) {
-    Saturation flags;
+  // Both directions go through the stage of the unit, one after the other, because the allocator
+  // reports one of them only.
+  Saturation flags(const Flags& given) const {
+    typename RateLaw<Scalar>::Allocation up{}, down{};
     for (std::size_t i = 0; i < 3; ++i) {
-      flags.positive[i] = given.positive[i] != 0;
-      flags.negative[i] = given.negative[i] != 0;
+      up.unallocated_torque[i] = given.positive[i] != 0 ? 1.0f : 0.0f;
+      down.unallocated_torque[i] = given.negative[i] != 0 ? -1.0f : 0.0f;
+    }
+    Saturation flags = rate_stages_.saturation(up);
+    const Saturation of_down = rate_stages_.saturation(down);
+    for (std::size_t i = 0; i < 3; ++i) {
+      flags.positive[i] = flags.positive[i] || of_down.positive[i];
+      flags.negative[i] = flags.negative[i] || of_down.negative[i];
     }
     return flags;
   }
 
   [[no_unique_address]] decltype(Law::step) stages_;
+  [[no_unique_address]] decltype(Law::rate) rate_stages_;
   RateLaw<Scalar, decltype(Law::rate)> law_;
 };
 

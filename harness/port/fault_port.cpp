@@ -2,17 +2,16 @@
 
 #include <optional>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "controller/actuation/unit_table.hpp"
-#include "controller/cascade/law_table.hpp"
 #include "controller/cascade/profile.hpp"
 #include "controller/faults/faulty_controller.hpp"
 #include "controller/mc_att_control/profile.hpp"
 #include "harness/core/suggestion.hpp"
+#include "harness/port/faulty_pure_law.hpp"
 
 namespace attest {
 namespace {
@@ -78,33 +77,6 @@ class FaultyBattery final : public UnitOf<attest_battery_inputs, attest_battery_
   std::optional<actuation::BasicBatteryStatus<faults::Scalar, faults::BatteryStages>> battery_;
 };
 
-template <typename New, typename Old, typename Inputs, typename Outputs>
-class FaultyPureLaw final : public UnitOf<Inputs, Outputs> {
- public:
-  using Law = std::variant<New, Old>;
-  explicit FaultyPureLaw(std::unique_ptr<Law> law) : law_(std::move(law)) {}
-
-  int set_parameter(const std::string&, float) override { return ATTEST_INVALID; }
-  int step(const Inputs& in, Outputs& out) override {
-    cascade::step_law(*law_, in, out);
-    return ATTEST_OK;
-  }
-
- private:
-  std::unique_ptr<Law> law_;
-};
-
-using faults::FaultyLaw;
-using faults::Scalar;
-using NewAttitudeLaw = cascade::PureAttitudeLaw<Scalar, faults::AttitudeUnitLaw>;
-using OldAttitudeLaw = mc_att_control::PureAttitudeLaw<Scalar, FaultyLaw>;
-using NewRateLaw = cascade::PureRateLaw<Scalar, faults::RateUnitLaw>;
-using OldRateLaw = mc_att_control::PureRateLaw<Scalar, FaultyLaw>;
-using FaultyAttitudeLaw = FaultyPureLaw<NewAttitudeLaw, OldAttitudeLaw, attest_attitude_law_inputs,
-                                        attest_attitude_law_outputs>;
-using FaultyRateLaw =
-    FaultyPureLaw<NewRateLaw, OldRateLaw, attest_rate_law_inputs, attest_rate_law_outputs>;
-
 class FaultPort final : public Port {
  public:
   FaultPort(std::string ids, std::vector<const Fault*> faults, std::optional<int> fraction_bits)
@@ -129,10 +101,8 @@ class FaultPort final : public Port {
       case Module::mixer:
         return make_mixer(profile, definition);
       case Module::attitude_law:
-        return make_law<FaultyAttitudeLaw, NewAttitudeLaw, OldAttitudeLaw>(
-            profile, &FaultyLaw::attitude_unit);
       case Module::rate_law:
-        return make_law<FaultyRateLaw, NewRateLaw, OldRateLaw>(profile, &FaultyLaw::rate_unit);
+        return make_faulty_law(module, profile, faults::law_with(faults_));
     }
     return nullptr;
   }
@@ -149,14 +119,6 @@ class FaultPort final : public Port {
     const auto parsed = actuation::parse_mixer(definition);
     if (!parsed || !actuation::is_profile(profile.c_str())) return nullptr;
     return std::make_unique<FaultyMixer>(*parsed, faults::law_with(faults_).mixer);
-  }
-
-  // `unit`: the part of the faulty law that is of v1.14 and later.
-  template <typename Made, typename New, typename Old, typename UnitLaw>
-  std::unique_ptr<Unit> make_law(const std::string& profile, UnitLaw FaultyLaw::*unit) const {
-    const FaultyLaw law = faults::law_with(faults_);
-    auto made = cascade::make_law<New, Old>(profile, law.*unit, law);
-    return made ? std::make_unique<Made>(std::move(made)) : nullptr;
   }
 
   std::string ids_;

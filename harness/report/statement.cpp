@@ -60,8 +60,15 @@ std::string profile_text(const std::string& name) {
   return fmt::format("{} as of {}", name, known->as_of);
 }
 
-std::string text_of(const Claim& claim, const RunResult& run) {
+// "px4-v1.16.0", "attitude_law, rate_law of px4-v1.16.0"
+std::string claimed(const Claim& claim) {
   const std::string profile = profile_text(claim.profile);
+  if (!claim.is_of_modules || claim.modules.empty()) return profile;
+  return fmt::format("{} of {}", names_of(claim.modules), profile);
+}
+
+std::string text_of(const Claim& claim, const RunResult& run) {
+  const std::string profile = claimed(claim);
   if (claim.failing.size() == 1) {
     return fmt::format("none: {}, a group fails ({})", profile, names_of(claim.failing));
   }
@@ -69,8 +76,9 @@ std::string text_of(const Claim& claim, const RunResult& run) {
     return fmt::format("none: {}, {} groups fail ({})", profile, claim.failing.size(),
                        names_of(claim.failing));
   }
-  const std::string what = fmt::format("{}, {}{}, {}, {}", profile, name_of(run.level),
-                                       arithmetic_of(run), rate_text(run), which_groups(claim));
+  std::string what =
+      fmt::format("{}, {}{}, {}", profile, name_of(run.level), arithmetic_of(run), rate_text(run));
+  if (!claim.is_of_modules) what += ", " + which_groups(claim);
   if (claim.is_complete()) return (claim.conforms() ? "conformant: " : "events agree: ") + what;
   return fmt::format("partial: {} (because: {})", what,
                      one_line(fmt::format("{}", fmt::join(claim.missing, "; "))));
@@ -108,7 +116,7 @@ std::string subject_of(const RunResult& run) {
 std::string on_the_badge(const RunResult& run, Standing standing) {
   std::string profile;
   for (const Claim& claim : claims_of(run)) {
-    if (claim.is_complete() || standing == Standing::partial) profile = one_line(claim.profile);
+    if (claim.is_complete() || standing == Standing::partial) profile = claimed(claim);
   }
   return fmt::format("{} {}{}{}", profile,
                      standing == Standing::events_agree ? name_of(standing) : name_of(run.level),

@@ -182,6 +182,21 @@ std::string without_files(std::string_view ports) {
   }
 }
 
+bool has_modules_only(const Groups& groups) {
+  return std::none_of(groups.begin(), groups.end(), [](const auto& group) {
+    return !is_module(group.first) && group.second.was_compared();
+  });
+}
+
+// Adds the optional modules of which some vectors are not good, although none failed.
+void say_which_modules_are_in_part(const Groups& groups, const RunResult& run,
+                                   std::vector<std::string>& missing) {
+  for (const auto& [name, group] : groups) {
+    if (!is_module(name) || !group.was_compared() || group.fails || is_whole(group, run)) continue;
+    missing.push_back("only a part of " + name);
+  }
+}
+
 std::vector<std::string> missing_of(const Groups& groups, const RunResult& run) {
   std::vector<std::string> missing;
   if (!run.suite_is_released) {
@@ -198,6 +213,10 @@ std::vector<std::string> missing_of(const Groups& groups, const RunResult& run) 
   if (run.fixed_step) {
     missing.push_back(fmt::format("fixed step of {} Hz", run.fixed_step->to_string()));
   }
+  if (has_modules_only(groups)) {
+    say_which_modules_are_in_part(groups, run, missing);
+    return missing;
+  }
   say_what_was_not_run(groups, run, missing);
   if (!run.fixed_step) say_what_was_not_compared(groups, missing);
   say(groups, &Group::unsupported, "vector unsupported", "vectors unsupported", missing);
@@ -211,6 +230,7 @@ Claim claim_of(const std::string& profile, const Groups& groups, const RunResult
   claim.profile = profile;
   claim.level = run.level;
   claim.has_all_groups = true;
+  claim.is_of_modules = has_modules_only(groups);
   for (const auto& [name, group] : groups) {
     const bool whole = is_whole(group, run);
     if (group.fails) claim.failing.push_back(name);
@@ -223,7 +243,8 @@ Claim claim_of(const std::string& profile, const Groups& groups, const RunResult
     }
   }
   claim.missing = missing_of(groups, run);
-  if (claim.whole.empty() && claim.missing.empty()) claim.missing.emplace_back("no vector passed");
+  const bool is_empty = claim.whole.empty() && claim.modules.empty();
+  if (is_empty && claim.missing.empty()) claim.missing.emplace_back("no vector passed");
   return claim;
 }
 

@@ -2,11 +2,12 @@
 // implement one version of the law only.
 //
 // A port conforms to a profile if no case failed, and all cases of the released suite passed: every
-// rate and every group, except the optional modules (mixer, battery estimate). Cases that are
-// compared at the exact level only may be skipped at another level (VectorResult::exact_only), but
-// of each group at least one vector must be compared. A port with a fixed step, changed parameters,
-// outputs that were not recorded, or no process of its own does not conform. A claim names the
-// groups that fail, and what is missing.
+// rate and every group, except the optional modules (mixer, battery estimate, pure laws). If only
+// optional modules were judged, the claim is about them: a port may be a law without its unit.
+// Cases that are compared at the exact level only may be skipped at another level
+// (VectorResult::exact_only), but of each group at least one vector must be compared. A port with a
+// fixed step, changed parameters, outputs that were not recorded, or no process of its own does not
+// conform. A claim names the groups that fail, and what is missing.
 //
 // At the level events a port does not conform, because the wide bounds of that level pass some
 // faults of the catalogue (tests/QUALITY.md). The claim is then that its events agree.
@@ -30,10 +31,14 @@ struct Claim {
   // failed is in `failing`.
   std::vector<std::string> modules;
   bool has_all_groups = false;  // all groups except optional modules are in `whole`
+  bool is_of_modules = false;   // no group but those of optional modules was compared
   std::vector<std::string>
       missing;  // reasons against conformance: "custom suite", "2 vectors unsupported (tpa)"
 
-  bool is_complete() const { return failing.empty() && missing.empty() && has_all_groups; }
+  bool is_complete() const {
+    const bool has_all = is_of_modules ? !modules.empty() : has_all_groups;
+    return failing.empty() && missing.empty() && has_all;
+  }
   bool conforms() const { return is_complete() && level != Level::events; }
 };
 
