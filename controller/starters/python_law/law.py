@@ -40,6 +40,9 @@ class RateLaw:
     NO_INTEGRAL_ERROR = Binary32(6.98131704)  # [rad/s] 400 deg/s: too large to integrate
 
     def __init__(self):
+        self.reset()
+
+    def reset(self):
         self.integral = [ZERO] * 3
 
     def torque(self, gains, rates, derivative, rates_sp, positive, negative, landed, dt):
