@@ -1,0 +1,381 @@
+// A right port of the two laws alone, of all profiles, in double precision. It was written from the
+// description of the law, before its author saw the reference: a second reading of the law.
+
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <string_view>
+
+#include <Eigen/Dense>
+
+#include "attest_law.h"
+
+namespace {
+
+using Vector = Eigen::Vector3d;
+using Matrix = Eigen::Matrix3d;
+
+constexpr double epsilon = 1.1920929e-7;  // FLT_EPSILON
+
+enum class Law { v1_3, v1_5, v1_14, v1_18 };
+
+bool find_law(std::string_view profile, Law& law) {
+  const struct {
+    std::string_view profile;
+    Law law;
+  } rows[] = {{"px4-v1.3.4", Law::v1_3},   {"px4-v1.5.5", Law::v1_5},   {"px4-v1.14.4", Law::v1_14},
+              {"px4-v1.15.4", Law::v1_14}, {"px4-v1.16.0", Law::v1_14}, {"px4-v1.17", Law::v1_14},
+              {"px4-v1.18", Law::v1_18}};
+  for (const auto& row : rows) {
+    if (row.profile != profile) continue;
+    law = row.law;
+    return true;
+  }
+  return false;
+}
+
+// Passes NaN.
+double clamp(double value, double low, double high) {
+  return value < low ? low : (value > high ? high : value);
+}
+
+Vector clamp(const Vector& value, const Vector& limit) {
+  Vector result;
+  for (int i = 0; i < 3; ++i) result[i] = clamp(value[i], -limit[i], limit[i]);
+  return result;
+}
+
+Vector vector_of(const float (&values)[3]) { return {values[0], values[1], values[2]}; }
+
+// ---- quaternions --------------------------------------------------------------------------------
+
+struct Quaternion {
+  double w = 1.0;
+  Vector v = Vector::Zero();
+
+  static Quaternion of(const float (&q)[4]) { return {q[0], {q[1], q[2], q[3]}}; }
+};
+
+double norm_squared(const Quaternion& q) { return q.w * q.w + q.v.squaredNorm(); }
+
+Quaternion operator*(const Quaternion& q, double factor) { return {q.w * factor, q.v * factor}; }
+
+Quaternion operator*(const Quaternion& q, const Quaternion& p) {
+  return {q.w * p.w - q.v.dot(p.v), q.w * p.v + p.w * q.v + q.v.cross(p.v)};
+}
+
+// Of norm 0: NaN, in both.
+Quaternion unit(const Quaternion& q) { return q * (1.0 / std::sqrt(norm_squared(q))); }
+Quaternion inverse(const Quaternion& q) { return Quaternion{q.w, -q.v} * (1.0 / norm_squared(q)); }
+
+// The first component other than 0 is positive.
+Quaternion canonical(const Quaternion& q) {
+  for (const double component : {q.w, q.v[0], q.v[1], q.v[2]}) {
+    if (std::abs(component) > epsilon) return q * (component > 0.0 ? 1.0 : -1.0);
+  }
+  return q;
+}
+
+// R(q). Of another norm than 1, it also scales.
+Matrix matrix(const Quaternion& q) {
+  const double a = q.w, b = q.v[0], c = q.v[1], d = q.v[2];
+  Matrix m;
+  m << a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (a * c + b * d),  //
+      2 * (b * c + a * d), a * a - b * b + c * c - d * d, 2 * (c * d - a * b),   //
+      2 * (b * d - a * c), 2 * (a * b + c * d), a * a - b * b - c * c + d * d;
+  return m;
+}
+
+Vector z_axis(const Quaternion& q) { return matrix(q).col(2); }
+
+// v in the frame into which q rotates.
+Vector turn(const Quaternion& q, const Vector& v) {
+  return (q * Quaternion{0.0, v} * inverse(q)).v;
+}
+
+Quaternion rotation(const Vector& v) {
+  const double angle = v.norm();
+  if (angle < 1e-10) return {};
+  return {std::cos(angle / 2), v / angle * std::sin(angle / 2)};
+}
+
+// The shortest rotation that turns a into b.
+Quaternion between(const Vector& a, const Vector& b) {
+  const Vector c = a.cross(b);
+  if (!(c.norm() < 1e-5 && a.dot(b) < 0.0)) {
+    return unit({a.dot(b) + std::sqrt(a.squaredNorm() * b.squaredNorm()), c});
+  }
+  const Vector m = a.cwiseAbs();
+  int axis = 2;
+  if (m[0] < m[1] && m[0] < m[2]) axis = 0;
+  if (!(m[0] < m[1]) && m[1] < m[2]) axis = 1;
+  return unit({0.0, a.cross(Vector::Unit(axis))});
+}
+
+// ---- attitude law, v1.14 to v1.18 ---------------------------------------------------------------
+
+using Gains = decltype(attest_attitude_law_inputs::attitude_gains);
+using Setpoint = decltype(attest_attitude_law_inputs::vehicle_attitude_setpoint);
+
+Vector rates_of_error(const Quaternion& q, const Quaternion& q_d, const Gains& gains) {
+  const double weight = clamp(gains.yaw_weight, 0.0, 1.0);
+  Vector p = vector_of(gains.p);
+  if (weight > 1e-4) p[2] /= weight;
+
+  constexpr double opposite = 1.0 - 1e-5;
+  Quaternion reduced = between(z_axis(q), z_axis(q_d));
+  const bool is_opposite =
+      std::abs(reduced.v[0]) > opposite || std::abs(reduced.v[1]) > opposite;
+  reduced = is_opposite ? q_d : reduced * q;
+  const Quaternion mix = canonical(inverse(reduced) * q_d);
+  const double w = clamp(mix.w, -1.0, 1.0);
+  const double z = clamp(mix.v[2], -1.0, 1.0);
+  const Quaternion yaw{std::cos(weight * std::acos(w)),
+                       {0.0, 0.0, std::sin(weight * std::asin(z))}};
+  return (canonical(inverse(q) * (reduced * yaw)).v * 2.0).cwiseProduct(p);
+}
+
+// The attitude that follows the setpoints of v1.18.
+class ReferenceModel {
+ public:
+  void take(const Setpoint& setpoint, const Gains& gains) {
+    if (setpoint.timestamp <= last_us_) return;
+    const Quaternion goal = unit(Quaternion::of(setpoint.q_d));
+    if (last_us_ == 0) {
+      q_ = goal;
+      correction_ = command_ = Vector::Zero();
+    } else {
+      move(goal, setpoint.yaw_sp_move_rate, double(setpoint.timestamp - last_us_) * 1e-6,
+           gains.ref_w_n > 0.1 ? gains.ref_w_n : 0.1);
+    }
+    last_us_ = setpoint.timestamp;
+  }
+
+  const Quaternion& attitude() const { return q_; }
+
+  // In the body frame of q.
+  Vector rates(const Quaternion& q, const Gains& gains) const {
+    const Quaternion to_body = inverse(q) * q_;
+    Vector forward = turn(to_body, correction_) * clamp(gains.ref_ff, 0.0, 1.0);
+    if (gains.ref_ff_max > 0.0f) forward = clamp(forward, Vector::Constant(gains.ref_ff_max));
+    return turn(to_body, command_) + forward;
+  }
+
+ private:
+  void move(const Quaternion& goal, double yaw_rate, double dt, double w) {
+    const Quaternion inverse_q = inverse(q_);
+    const Vector world_z = z_axis(inverse_q);
+    command_ = std::isfinite(yaw_rate) ? Vector(world_z * yaw_rate) : Vector::Zero();
+    const Vector error = 2.0 * canonical(inverse_q * goal).v;
+    const double k = w * dt;
+    const double decay = std::exp(-k);
+    const Vector phi =
+        (1.0 - (1.0 + k) * decay) * error + dt * decay * correction_ + command_ * dt;
+    correction_ = w * w * dt * decay * error + (1.0 - k) * decay * correction_;
+    if (std::isfinite(yaw_rate) && std::abs(yaw_rate) > epsilon) {
+      correction_ -= world_z * correction_.dot(world_z);
+    }
+    q_ = unit(q_ * rotation(phi));
+  }
+
+  Quaternion q_;
+  Vector correction_ = Vector::Zero(), command_ = Vector::Zero();
+  uint64_t last_us_ = 0;
+};
+
+// ---- attitude law, v1.3 and v1.5 ----------------------------------------------------------------
+
+Quaternion quaternion_of(const Matrix& m) {
+  const double trace = m.trace();
+  if (trace > 0.0) {
+    const double s = std::sqrt(trace + 1.0);
+    return {s / 2, Vector{m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1)} * (0.5 / s)};
+  }
+  int i = 0;
+  for (int n = 1; n < 3; ++n) {
+    if (m(n, n) > m(i, i)) i = n;
+  }
+  const int j = (i + 1) % 3, k = (i + 2) % 3;
+  const double s = std::sqrt(m(i, i) - m(j, j) - m(k, k) + 1.0);
+  Quaternion q{(m(k, j) - m(j, k)) * (0.5 / s), {}};
+  q.v[i] = s / 2;
+  q.v[j] = (m(i, j) + m(j, i)) * (0.5 / s);
+  q.v[k] = (m(k, i) + m(i, k)) * (0.5 / s);
+  return q;
+}
+
+Matrix cross_product_matrix(const Vector& v) {
+  Matrix m;
+  m << 0.0, -v[2], v[1], v[2], 0.0, -v[0], -v[1], v[0], 0.0;
+  return m;
+}
+
+// The error as an angle about an axis [rad]: tilt, and yaw times its weight.
+Vector error_angles(const Matrix& R, const Matrix& R_sp, double yaw_weight) {
+  const double c = R.col(2).dot(R_sp.col(2));
+  Vector e = R.transpose() * R.col(2).cross(R_sp.col(2));
+  const double s = e.norm();
+  Matrix R_rp = R;
+  if (s > 0.0) {
+    const Vector axis = e / s;
+    e = axis * std::atan2(s, c);
+    const Matrix K = cross_product_matrix(axis);
+    R_rp = R * (Matrix::Identity() + K * s + K * K * (1.0 - c));
+  }
+  const Vector x_rp = R_rp.col(0), x_sp = R_sp.col(0);
+  e[2] = std::atan2(x_rp.cross(x_sp).dot(R_sp.col(2)), x_rp.dot(x_sp)) * yaw_weight;
+  if (c < 0.0) {
+    const Quaternion direct = quaternion_of(R.transpose() * R_sp);
+    const double share = c * c * yaw_weight;
+    e = e * (1.0 - share) + direct.v * (direct.w >= 0.0 ? 2.0 : -2.0) * share;
+  }
+  return e;
+}
+
+Vector attitude_law_v1_5(Law law, const attest_attitude_law_inputs& in) {
+  const Gains& gains = in.attitude_gains;
+  const Matrix R_sp = matrix(Quaternion::of(in.vehicle_attitude_setpoint.q_d));
+  const double yaw_weight = R_sp(2, 2) * R_sp(2, 2);
+  const Vector error =
+      error_angles(matrix(Quaternion::of(in.vehicle_attitude.q)), R_sp, yaw_weight);
+  Vector rates = clamp(vector_of(gains.p).cwiseProduct(error), vector_of(gains.rate_max));
+  const double vane = double(gains.rate_max[2]) * gains.weathervane_scale;
+  if (in.law.weathervane && law == Law::v1_3) rates[2] = clamp(rates[2], -vane, vane);
+  rates[2] += double(in.vehicle_attitude_setpoint.yaw_sp_move_rate) * yaw_weight * gains.yaw_ff;
+  if (in.law.weathervane) rates[2] = clamp(rates[2], -vane, vane);
+  return rates;
+}
+
+// ---- the modules --------------------------------------------------------------------------------
+
+struct AttitudeLaw {
+  Law law{};
+  ReferenceModel model;
+
+  Vector step(const attest_attitude_law_inputs& in) {
+    if (law == Law::v1_3 || law == Law::v1_5) return attitude_law_v1_5(law, in);
+    const Gains& gains = in.attitude_gains;
+    const Setpoint& setpoint = in.vehicle_attitude_setpoint;
+    const Quaternion q = Quaternion::of(in.vehicle_attitude.q);
+    Vector rates;
+    if (law == Law::v1_18) {
+      model.take(setpoint, gains);
+      rates = rates_of_error(q, model.attitude(), gains) + model.rates(q, gains);
+    } else {
+      rates = rates_of_error(q, unit(Quaternion::of(setpoint.q_d)), gains);
+      const double yaw_rate = setpoint.yaw_sp_move_rate;
+      if (std::isfinite(yaw_rate)) rates += z_axis(inverse(q)) * yaw_rate;
+    }
+    return clamp(rates, vector_of(gains.rate_max));
+  }
+};
+
+struct RateLaw {
+  Law law{};
+  Vector integral = Vector::Zero();
+
+  Vector step(const attest_rate_law_inputs& in) {
+    if (in.law.reset) integral.setZero();
+    return law == Law::v1_3 || law == Law::v1_5 ? step_v1_5(in) : step_v1_14(in);
+  }
+
+ private:
+  Vector step_v1_14(const attest_rate_law_inputs& in) {
+    const auto& gains = in.rate_gains;
+    Vector torque;
+    for (int i = 0; i < 3; ++i) {
+      const double sp = (&in.vehicle_rates_setpoint.roll)[i];
+      double error = sp - in.vehicle_angular_velocity.xyz[i];
+      torque[i] = gains.p[i] * error + integral[i] -
+                  double(gains.d[i]) * in.vehicle_angular_velocity.xyz_derivative[i] +
+                  gains.ff[i] * sp;
+      if (in.law.landed) continue;
+      if (in.saturation.positive[i]) error = error < 0.0 ? error : 0.0;
+      if (in.saturation.negative[i]) error = error > 0.0 ? error : 0.0;
+      const double ratio = error / (400.0 / 180.0 * EIGEN_PI);
+      const double rest = 1.0 - ratio * ratio;
+      const double sum =
+          integral[i] + (0.0 > rest ? 0.0 : rest) * gains.i[i] * error * in.law.dt;
+      if (std::isfinite(sum)) integral[i] = clamp(sum, -gains.integral_max[i], gains.integral_max[i]);
+    }
+    return torque;
+  }
+
+  Vector step_v1_5(const attest_rate_law_inputs& in) {
+    const auto& gains = in.rate_gains;
+    const double thrust = in.vehicle_rates_setpoint.thrust, dt = in.law.dt;
+    double attenuation = 1.0;
+    if (law == Law::v1_5) {
+      const double above = std::abs(thrust) - gains.tpa_break;
+      attenuation = std::fmax(0.0, std::fmin(1.0, 1.0 - gains.tpa_slope * above));
+    }
+    const auto& limits = in.multirotor_motor_limits;
+    const bool integrates = thrust > 0.2 && !limits.lower_limit && !limits.upper_limit;
+    Vector torque;
+    for (int i = 0; i < 3; ++i) {
+      const double sp = (&in.vehicle_rates_setpoint.roll)[i];
+      const double rate = in.vehicle_angular_velocity.xyz[i];
+      const double error = sp - rate;
+      double forward = gains.ff[i] * sp;
+      if (law == Law::v1_3) forward = gains.ff[i] * (sp - in.previous.rates_sp[i]) / dt;
+      torque[i] = gains.p[i] * error * attenuation +
+                  gains.d[i] * (in.previous.rates[i] - rate) / dt + integral[i] + forward;
+      const bool yaw_is_limited = law == Law::v1_5 && i == 2 && limits.yaw;
+      if (!integrates || yaw_is_limited || !(std::abs(torque[i]) < thrust)) continue;
+      const double sum = integral[i] + gains.i[i] * error * dt;
+      if (std::abs(sum) < 0.3 && std::abs(torque[i]) < 0.3) integral[i] = sum;
+    }
+    return torque;
+  }
+};
+
+// ---- the ABI ------------------------------------------------------------------------------------
+
+template <class Module>
+void* create(const char* profile) {
+  auto module = std::make_unique<Module>();
+  return find_law(profile, module->law) ? module.release() : nullptr;
+}
+
+template <class Module>
+void destroy(void* self) {
+  delete static_cast<Module*>(self);
+}
+
+int step_attitude(void* self, const attest_attitude_law_inputs* in,
+                  attest_attitude_law_outputs* out) {
+  const Eigen::Vector3f rates = static_cast<AttitudeLaw*>(self)->step(*in).cast<float>();
+  out->vehicle_rates_setpoint = {rates[0], rates[1], rates[2]};
+  return ATTEST_OK;
+}
+
+int step_rate(void* self, const attest_rate_law_inputs* in, attest_rate_law_outputs* out) {
+  auto& law = *static_cast<RateLaw*>(self);
+  const Eigen::Vector3f torque = law.step(*in).cast<float>();
+  for (int i = 0; i < 3; ++i) out->vehicle_torque_setpoint.xyz[i] = torque[i];
+  const Eigen::Vector3f integral = law.integral.cast<float>();
+  out->rate_ctrl_status = {integral[0], integral[1], integral[2]};
+  return ATTEST_OK;
+}
+
+const void* extension(const char* id) {
+  static const attest_attitude_law attitude{create<AttitudeLaw>, destroy<AttitudeLaw>,
+                                            step_attitude};
+  static const attest_rate_law rate{create<RateLaw>, destroy<RateLaw>, step_rate};
+  if (std::strcmp(id, ATTEST_EXTENSION_ATTITUDE_LAW) == 0) return &attitude;
+  return std::strcmp(id, ATTEST_EXTENSION_RATE_LAW) == 0 ? &rate : nullptr;
+}
+
+}  // namespace
+
+extern "C" const attest_unit* attest_unit_v1() {
+  static const attest_unit unit = [] {
+    attest_unit result{};
+    result.abi_version = ATTEST_UNIT_ABI_VERSION;
+    result.name = "right-pure-laws";
+    result.version = "1.0";
+    result.extension = extension;
+    return result;
+  }();
+  return &unit;
+}
