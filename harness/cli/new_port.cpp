@@ -35,9 +35,12 @@ struct Language {
 constexpr std::array languages{
     Language{"c", "C", "cc", true},
     Language{"c_cascade", "C, with both units of PX4 v1.14 to v1.18", "cc", true},
+    Language{"c_law", "C, with the attitude law and the rate law alone", "cc", true},
     Language{"cpp", "C++", "c++", true},
     Language{"python", "Python", "python3", false},
     Language{"python_cascade", "Python, with both units of PX4 v1.14 to v1.18", "python3", false},
+    Language{"python_law", "Python, with the attitude law and the rate law alone", "python3",
+             false},
     Language{"rust", "Rust", "cargo", false},
     Language{"simulink", "C generated from a Simulink model", "cc", true},
 };
@@ -142,12 +145,14 @@ void add_new_port(const CommandLine& line) {
   command
       .option("--lang", options->language,
               "Port to start from: `c`, `cpp`, `python`, `rust` or `simulink` for v1.5.5 and "
-              "v1.3.4; `c_cascade` or `python_cascade` for v1.14 to v1.18")
+              "v1.3.4; `c_cascade` or `python_cascade` for v1.14 to v1.18; `c_law` or "
+              "`python_law` for the two laws of v1.14 to v1.17 alone")
       .type("LANG")
       .required();
   command.examples(
       {{"attest new-port mine --lang c", "a port in C; mine/check builds and runs it"},
        {"attest new-port mine --lang c_cascade", "a port in C of v1.14 to v1.18"},
+       {"attest new-port mine --lang c_law", "the two laws alone: two functions in C"},
        {"attest new-port mine --lang simulink", "a wrapper for C code that Simulink generated"}});
   command.runs(options, new_port_command);
 }

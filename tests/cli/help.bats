@@ -103,7 +103,7 @@ completed() {
   completed attest run --level ""
   [ "$output" = "events exact numeric" ]
   completed attest new-port mine --lang p
-  [ "$output" = "python python_cascade" ]
+  [ "$output" = "python python_cascade python_law" ]
   completed attest run --group att
   [ "$output" = attitude ]
   completed attest sim flip_150_lev

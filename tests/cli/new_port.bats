@@ -4,19 +4,20 @@ setup_file() {
   export PYTHONDONTWRITEBYTECODE=1
 }
 
-# made LANGUAGE TOOL: a new port of that language conforms to a group, through its own check.
+# made LANGUAGE TOOL [GROUP]: a new port of that language conforms to a group, through its own check.
 made() {
+  local group=${3:-rates}
   command -v "$2" >/dev/null || skip "no $2"
   run "$ATTEST" new-port mine --lang "$1"
   [ "$status" -eq 0 ]
   has "mine/check"
   cp "$ATTEST" attest
   export ATTEST_SUITE=$SOURCE PATH=$PWD:$PATH
-  run mine/check --group rates --rate 250
+  run mine/check --group "$group" --rate 250
   [ "$status" -eq 0 ]
   has "PASS"
   # Paths are relative to the folder in which check was called, those of the report too.
-  run mine/check --group rates --rate 250 --html report.html --json report.json
+  run mine/check --group "$group" --rate 250 --html report.html --json report.json
   [ "$status" -eq 0 ]
   [ -s report.html ]
   grep -q '"specification": ".*mine/' report.json
@@ -31,12 +32,22 @@ made() {
   has "px4-v1.16.0: vectors by group and rate"
   lacks "px4-v1.5.5"
 }
+@test "a new port in C of the two laws alone" {
+  made c_law cc rate_law
+  has "px4-v1.18: vectors by group and rate"
+  lacks "px4-v1.5.5: vectors"
+}
 @test "a new port in C++" { made cpp c++; }
 @test "a new port in Python" { made python python3; }
 @test "a new port in Python of the cascade" {
   made python_cascade python3
   has "px4-v1.16.0: vectors by group and rate"
   lacks "px4-v1.5.5"
+}
+@test "a new port in Python of the two laws alone" {
+  made python_law python3 rate_law
+  has "px4-v1.18: vectors by group and rate"
+  lacks "px4-v1.5.5: vectors"
 }
 @test "a new port in Rust" { made rust cargo; }
 @test "a new port of a Simulink model" { made simulink cc; }
@@ -45,7 +56,7 @@ made() {
   run "$ATTEST" new-port mine --lang pyton
   [ "$status" -eq 2 ]
   has "no starter in \`pyton\`; did you mean \`python\`?"
-  has "; there are c, c_cascade, cpp, python, python_cascade, rust, simulink"
+  has "; there are c, c_cascade, c_law, cpp, python, python_cascade, python_law, rust, simulink"
   [ ! -e mine ]
   mkdir mine
   echo mine >mine/file

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """How far right ports that compute in other ways are from a failure.
 
-    headroom.py ATTEST FOLDER [--law controller|cascade] [--profile PROFILE] [--group GROUP]...
+    headroom.py ATTEST FOLDER [--law controller|cascade|laws] [--profile PROFILE] [--group GROUP]...
                 [--rate HZ,...] [--only PREFIX]
 
 Runs each right port in FOLDER through the suite at the numeric level. Prints a Markdown table for
-the controller of v1.5.5 and v1.3.4, and one for each profile of the cascade: the number of vectors
-that failed, and the tightest headroom (tolerance / difference) of each kind of output. Exits 1 if a
+the controller of v1.5.5 and v1.3.4, one for each profile of the cascade, and one for the two laws
+alone: the number of vectors that failed, and the tightest headroom (tolerance / difference) of each kind of output. Exits 1 if a
 right port failed or ran no vector, if it left out others than it may, or if a headroom is not
 above 3.
 """
@@ -24,6 +24,9 @@ LEAST = 3.0
 EXACT_ONLY = "on a threshold of the law"
 DECLARED = "the port declares that it does not support"
 OPTIONAL_GROUPS = ("mixer", "battery_status")
+
+# The groups of the two laws alone, which have a table of their own.
+LAW_GROUPS = ("attitude_law", "rate_law")
 
 # name of the library, what is different in it
 REFERENCES = [
@@ -49,6 +52,7 @@ CASCADES = REFERENCES + [
     ("right_cascade_fixed_point", "fixed point, 32 bits behind the point"),
     ("right_cascade_fixed_22", "fixed point, 22 bits, judged as one"),
 ]
+PURE_LAWS = REFERENCES + [("right_pure_laws", "double precision, written anew")]
 
 # The profiles of each table, its ports, and the kinds of outputs with words of their channels. The
 # first kind that fits counts.
@@ -75,6 +79,19 @@ LAWS = {
         "kinds": {
             "thrust": ["thrust"],
             "attitude setpoint": ["vehicle_attitude_setpoint"],
+            "rates": ["vehicle_rates_setpoint"],
+            "torque": ["vehicle_torque_setpoint"],
+            "integrals": ["rate_ctrl_status"],
+        },
+    },
+    "laws": {
+        "tables": [
+            ["px4-v1.18"],
+            ["px4-v1.17", "px4-v1.16.0", "px4-v1.15.4", "px4-v1.14.4"],
+            ["px4-v1.5.5", "px4-v1.3.4"],
+        ],
+        "ports": PURE_LAWS,
+        "kinds": {
             "rates": ["vehicle_rates_setpoint"],
             "torque": ["vehicle_torque_setpoint"],
             "integrals": ["rate_ctrl_status"],
@@ -156,7 +173,11 @@ def judge(what, results, kinds):
 
 def table(args, law, profiles):
     selection = [word for profile in profiles for word in ("--profile", profile)]
-    selection += [word for group in args.group for word in ("--group", group)]
+    if law is LAWS["laws"]:
+        selection += ["--group", ",".join(LAW_GROUPS)]
+    else:
+        selection += [word for group in args.group for word in ("--group", group)]
+        selection += [word for group in LAW_GROUPS for word in ("--exclude", f"{group}/*")]
     selection += ["--rate", args.rate] if args.rate else []
     kinds = law["kinds"]
     print(f"{' and '.join(profiles)}:\n")

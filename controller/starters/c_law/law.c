@@ -40,10 +40,9 @@ static quaternion inverse(quaternion q) {
 }
 
 static quaternion product(quaternion q, quaternion p) {
-  return (quaternion){q.w * p.w - q.x * p.x - q.y * p.y - q.z * p.z,
-                      q.x * p.w + q.w * p.x - q.z * p.y + q.y * p.z,
-                      q.y * p.w + q.z * p.x + q.w * p.y - q.x * p.z,
-                      q.z * p.w - q.y * p.x + q.x * p.y + q.w * p.z};
+  return (quaternion){
+      q.w * p.w - q.x * p.x - q.y * p.y - q.z * p.z, q.x * p.w + q.w * p.x - q.z * p.y + q.y * p.z,
+      q.y * p.w + q.z * p.x + q.w * p.y - q.x * p.z, q.z * p.w - q.y * p.x + q.x * p.y + q.w * p.z};
 }
 
 /* Of the two quaternions of a rotation, the one whose first component other than 0 is positive. */

@@ -53,7 +53,7 @@ static const void* extension(const char* id) {
 }
 
 const attest_unit* attest_unit_v1(void) {
-  static const attest_unit unit = {
-      ATTEST_UNIT_ABI_VERSION, "attest-starter-c-law", "1.0", .extension = extension};
+  static const attest_unit unit = {ATTEST_UNIT_ABI_VERSION, "attest-starter-c-law", "1.0",
+                                   .extension = extension};
   return &unit;
 }

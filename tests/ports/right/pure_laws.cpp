@@ -6,16 +6,12 @@
 #include <memory>
 #include <string_view>
 
-#include <Eigen/Dense>
-
 #include "attest_law.h"
+#include "tests/ports/right/pure_rotation.hpp"
 
 namespace {
 
-using Vector = Eigen::Vector3d;
-using Matrix = Eigen::Matrix3d;
-
-constexpr double epsilon = 1.1920929e-7;  // FLT_EPSILON
+using namespace pure;
 
 enum class Law { v1_3, v1_5, v1_14, v1_18 };
 
@@ -34,84 +30,6 @@ bool find_law(std::string_view profile, Law& law) {
   return false;
 }
 
-// Passes NaN.
-double clamp(double value, double low, double high) {
-  return value < low ? low : (value > high ? high : value);
-}
-
-Vector clamp(const Vector& value, const Vector& limit) {
-  Vector result;
-  for (int i = 0; i < 3; ++i) result[i] = clamp(value[i], -limit[i], limit[i]);
-  return result;
-}
-
-Vector vector_of(const float (&values)[3]) { return {values[0], values[1], values[2]}; }
-
-// ---- quaternions --------------------------------------------------------------------------------
-
-struct Quaternion {
-  double w = 1.0;
-  Vector v = Vector::Zero();
-
-  static Quaternion of(const float (&q)[4]) { return {q[0], {q[1], q[2], q[3]}}; }
-};
-
-double norm_squared(const Quaternion& q) { return q.w * q.w + q.v.squaredNorm(); }
-
-Quaternion operator*(const Quaternion& q, double factor) { return {q.w * factor, q.v * factor}; }
-
-Quaternion operator*(const Quaternion& q, const Quaternion& p) {
-  return {q.w * p.w - q.v.dot(p.v), q.w * p.v + p.w * q.v + q.v.cross(p.v)};
-}
-
-// Of norm 0: NaN, in both.
-Quaternion unit(const Quaternion& q) { return q * (1.0 / std::sqrt(norm_squared(q))); }
-Quaternion inverse(const Quaternion& q) { return Quaternion{q.w, -q.v} * (1.0 / norm_squared(q)); }
-
-// The first component other than 0 is positive.
-Quaternion canonical(const Quaternion& q) {
-  for (const double component : {q.w, q.v[0], q.v[1], q.v[2]}) {
-    if (std::abs(component) > epsilon) return q * (component > 0.0 ? 1.0 : -1.0);
-  }
-  return q;
-}
-
-// R(q). Of another norm than 1, it also scales.
-Matrix matrix(const Quaternion& q) {
-  const double a = q.w, b = q.v[0], c = q.v[1], d = q.v[2];
-  Matrix m;
-  m << a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (a * c + b * d),  //
-      2 * (b * c + a * d), a * a - b * b + c * c - d * d, 2 * (c * d - a * b),   //
-      2 * (b * d - a * c), 2 * (a * b + c * d), a * a - b * b - c * c + d * d;
-  return m;
-}
-
-Vector z_axis(const Quaternion& q) { return matrix(q).col(2); }
-
-// v in the frame into which q rotates.
-Vector turn(const Quaternion& q, const Vector& v) {
-  return (q * Quaternion{0.0, v} * inverse(q)).v;
-}
-
-Quaternion rotation(const Vector& v) {
-  const double angle = v.norm();
-  if (angle < 1e-10) return {};
-  return {std::cos(angle / 2), v / angle * std::sin(angle / 2)};
-}
-
-// The shortest rotation that turns a into b.
-Quaternion between(const Vector& a, const Vector& b) {
-  const Vector c = a.cross(b);
-  if (!(c.norm() < 1e-5 && a.dot(b) < 0.0)) {
-    return unit({a.dot(b) + std::sqrt(a.squaredNorm() * b.squaredNorm()), c});
-  }
-  const Vector m = a.cwiseAbs();
-  int axis = 2;
-  if (m[0] < m[1] && m[0] < m[2]) axis = 0;
-  if (!(m[0] < m[1]) && m[1] < m[2]) axis = 1;
-  return unit({0.0, a.cross(Vector::Unit(axis))});
-}
-
 // ---- attitude law, v1.14 to v1.18 ---------------------------------------------------------------
 
 using Gains = decltype(attest_attitude_law_inputs::attitude_gains);
@@ -124,8 +42,7 @@ Vector rates_of_error(const Quaternion& q, const Quaternion& q_d, const Gains& g
 
   constexpr double opposite = 1.0 - 1e-5;
   Quaternion reduced = between(z_axis(q), z_axis(q_d));
-  const bool is_opposite =
-      std::abs(reduced.v[0]) > opposite || std::abs(reduced.v[1]) > opposite;
+  const bool is_opposite = std::abs(reduced.v[0]) > opposite || std::abs(reduced.v[1]) > opposite;
   reduced = is_opposite ? q_d : reduced * q;
   const Quaternion mix = canonical(inverse(reduced) * q_d);
   const double w = clamp(mix.w, -1.0, 1.0);
@@ -169,8 +86,7 @@ class ReferenceModel {
     const Vector error = 2.0 * canonical(inverse_q * goal).v;
     const double k = w * dt;
     const double decay = std::exp(-k);
-    const Vector phi =
-        (1.0 - (1.0 + k) * decay) * error + dt * decay * correction_ + command_ * dt;
+    const Vector phi = (1.0 - (1.0 + k) * decay) * error + dt * decay * correction_ + command_ * dt;
     correction_ = w * w * dt * decay * error + (1.0 - k) * decay * correction_;
     if (std::isfinite(yaw_rate) && std::abs(yaw_rate) > epsilon) {
       correction_ -= world_z * correction_.dot(world_z);
@@ -280,11 +196,17 @@ struct RateLaw {
   }
 
  private:
+  static Vector setpoint_of(const attest_rate_law_inputs& in) {
+    const auto& setpoint = in.vehicle_rates_setpoint;
+    return {setpoint.roll, setpoint.pitch, setpoint.yaw};
+  }
+
   Vector step_v1_14(const attest_rate_law_inputs& in) {
     const auto& gains = in.rate_gains;
+    const Vector setpoint = setpoint_of(in);
     Vector torque;
     for (int i = 0; i < 3; ++i) {
-      const double sp = (&in.vehicle_rates_setpoint.roll)[i];
+      const double sp = setpoint[i];
       double error = sp - in.vehicle_angular_velocity.xyz[i];
       torque[i] = gains.p[i] * error + integral[i] -
                   double(gains.d[i]) * in.vehicle_angular_velocity.xyz_derivative[i] +
@@ -294,9 +216,9 @@ struct RateLaw {
       if (in.saturation.negative[i]) error = error > 0.0 ? error : 0.0;
       const double ratio = error / (400.0 / 180.0 * EIGEN_PI);
       const double rest = 1.0 - ratio * ratio;
-      const double sum =
-          integral[i] + (0.0 > rest ? 0.0 : rest) * gains.i[i] * error * in.law.dt;
-      if (std::isfinite(sum)) integral[i] = clamp(sum, -gains.integral_max[i], gains.integral_max[i]);
+      const double sum = integral[i] + (0.0 > rest ? 0.0 : rest) * gains.i[i] * error * in.law.dt;
+      if (std::isfinite(sum))
+        integral[i] = clamp(sum, -gains.integral_max[i], gains.integral_max[i]);
     }
     return torque;
   }
@@ -311,9 +233,10 @@ struct RateLaw {
     }
     const auto& limits = in.multirotor_motor_limits;
     const bool integrates = thrust > 0.2 && !limits.lower_limit && !limits.upper_limit;
+    const Vector setpoint = setpoint_of(in);
     Vector torque;
     for (int i = 0; i < 3; ++i) {
-      const double sp = (&in.vehicle_rates_setpoint.roll)[i];
+      const double sp = setpoint[i];
       const double rate = in.vehicle_angular_velocity.xyz[i];
       const double error = sp - rate;
       double forward = gains.ff[i] * sp;
