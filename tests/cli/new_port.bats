@@ -4,7 +4,7 @@ setup_file() {
   export PYTHONDONTWRITEBYTECODE=1
 }
 
-# made LANGUAGE TOOL [GROUP]: a new port of that language conforms to a group, through its own check.
+# made LANGUAGE TOOL [GROUP]: a new port of that language conforms to a group, by its own check.
 made() {
   local group=${3:-rates}
   command -v "$2" >/dev/null || skip "no $2"

@@ -5,10 +5,10 @@
                 [--rate HZ,...] [--only PREFIX]
 
 Runs each right port in FOLDER through the suite at the numeric level. Prints a Markdown table for
-the controller of v1.5.5 and v1.3.4, one for each profile of the cascade, and one for the two laws
-alone: the number of vectors that failed, and the tightest headroom (tolerance / difference) of each kind of output. Exits 1 if a
-right port failed or ran no vector, if it left out others than it may, or if a headroom is not
-above 3.
+the controller of v1.5.5 and v1.3.4, one for each profile of the cascade, and some for the two laws
+alone: the number of vectors that failed, and the tightest headroom (tolerance / difference) of each
+kind of output. --group does not apply to the two laws. Exits 1 if a right port failed or ran no
+vector, if it left out others than it may, or if a headroom is not above 3.
 """
 
 import argparse

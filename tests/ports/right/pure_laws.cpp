@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <numbers>
 #include <string_view>
 
 #include "attest_law.h"
@@ -214,7 +215,7 @@ struct RateLaw {
       if (in.law.landed) continue;
       if (in.saturation.positive[i]) error = error < 0.0 ? error : 0.0;
       if (in.saturation.negative[i]) error = error > 0.0 ? error : 0.0;
-      const double ratio = error / (400.0 / 180.0 * EIGEN_PI);
+      const double ratio = error / (400.0 / 180.0 * std::numbers::pi);
       const double rest = 1.0 - ratio * ratio;
       const double sum = integral[i] + (0.0 > rest ? 0.0 : rest) * gains.i[i] * error * in.law.dt;
       if (std::isfinite(sum))

@@ -1,11 +1,10 @@
+// Vectors and quaternions of pure_laws.cpp, in double precision. A quaternion may have any norm. If
+// it is 0, unit() and inverse() give NaN, as in the law.
 #pragma once
 
 #include <cmath>
 
 #include <Eigen/Dense>
-
-// Vectors and quaternions of pure_laws.cpp. A quaternion keeps its norm, and nothing guards against
-// a norm of 0: as in the law, the result is then NaN.
 
 namespace pure {
 
