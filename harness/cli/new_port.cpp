@@ -30,19 +30,21 @@ struct Language {
   std::string_view title;  // for "a port in TITLE"
   const char* toolchain;   // the program that its `check` needs
   bool has_headers;        // it includes the ABI headers
+  std::string_view group;  // of cases, for an example of `check`
 };
 
 constexpr std::array languages{
-    Language{"c", "C", "cc", true},
-    Language{"c_cascade", "C, with both units of PX4 v1.14 to v1.18", "cc", true},
-    Language{"c_law", "C, with the attitude law and the rate law alone", "cc", true},
-    Language{"cpp", "C++", "c++", true},
-    Language{"python", "Python", "python3", false},
-    Language{"python_cascade", "Python, with both units of PX4 v1.14 to v1.18", "python3", false},
-    Language{"python_law", "Python, with the attitude law and the rate law alone", "python3",
-             false},
-    Language{"rust", "Rust", "cargo", false},
-    Language{"simulink", "C generated from a Simulink model", "cc", true},
+    Language{"c", "C", "cc", true, "attitude"},
+    Language{"c_cascade", "C, with both units of PX4 v1.14 to v1.18", "cc", true, "attitude"},
+    Language{"c_law", "C, with the attitude law and the rate law alone", "cc", true, "rate_law"},
+    Language{"cpp", "C++", "c++", true, "attitude"},
+    Language{"python", "Python", "python3", false, "attitude"},
+    Language{"python_cascade", "Python, with both units of PX4 v1.14 to v1.18", "python3", false,
+             "attitude"},
+    Language{"python_law", "Python, with the attitude law and the rate law alone", "python3", false,
+             "rate_law"},
+    Language{"rust", "Rust", "cargo", false, "attitude"},
+    Language{"simulink", "C generated from a Simulink model", "cc", true, "attitude"},
 };
 
 Result<Language> language_named(const std::string& name) {
@@ -129,9 +131,9 @@ int new_port_command(const NewPortOptions& options, const Globals& globals) {
   fmt::print(
       "{0} has a complete port in {1}. Replace its law by yours; README.md says where.\n"
       "  {0}/check                   builds it and runs the whole suite\n"
-      "  {0}/check --group attitude  builds it and runs one group: all options of `attest run`\n"
+      "  {0}/check --group {2}  builds it and runs one group: all options of `attest run`\n"
       "  .github/ and .gitlab-ci.yml there run check in CI; set ATTEST_PACKAGE_URL\n",
-      options.folder, language->title);
+      options.folder, language->title, language->group);
   return exit_ok;
 }
 

@@ -105,7 +105,7 @@ completed() {
   completed attest new-port mine --lang p
   [ "$output" = "python python_cascade python_law" ]
   completed attest run --group att
-  [ "$output" = attitude ]
+  [ "$output" = "attitude attitude_law" ]
   completed attest sim flip_150_lev
   [ "$output" = "flip_150_level" ]
   completed attest run --vehicle h

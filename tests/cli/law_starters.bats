@@ -1,4 +1,4 @@
-# The starters that have the two laws alone: every case of both laws, in each profile that they have.
+# The starters that have the two laws alone: the cases of both laws.
 
 load common
 
@@ -18,7 +18,7 @@ in_python="$SOURCE/controller/starters/python_law"
 }
 
 @test "the starter in Python has them to the bit, too" {
-  # The law is the same in all its profiles. random_attitudes is long: the starter is slow.
+  # One profile: the law is the same in the others.
   run "$ATTEST" run --level exact --group attitude_law,rate_law --profile px4-v1.17 \
     --port "proc:$PYTHON $in_python/port.py"
   [ "$status" -eq 0 ]
