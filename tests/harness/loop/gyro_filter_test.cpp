@@ -1,57 +1,22 @@
 #include "harness/loop/gyro_filter.hpp"
 
 #include <cmath>
-#include <complex>
 #include <limits>
-#include <numbers>
 
 #include <gtest/gtest.h>
+
+#include "tests/harness/loop/gyro_response.hpp"
 
 namespace attest {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using test::butterworth;
+using test::difference;
+using test::first_order;
+using test::measured_response;
+using test::Response;
+
 constexpr double not_low_passed = 0;
-
-struct Gains {
-  double rate, acceleration;  // of the acceleration divided by 2 pi f: 1 is exact
-};
-
-// The gains for an oscillation of the body rate. Measured over one second, after two for the
-// filters to settle.
-Gains gains(const Rate& sampling, GyroFilter filter, double frequency_hz) {
-  const auto samples = static_cast<std::int64_t>(sampling.hertz());
-  std::complex<double> rate = 0, acceleration = 0;
-  for (std::int64_t k = 0; k < 3 * samples; ++k) {
-    const double phase = 2 * pi * frequency_hz * static_cast<double>(k) / sampling.hertz();
-    filter.sample(sampling.tick(k), {0, std::sin(phase), 0});
-    if (k < 2 * samples) continue;
-    rate += filter.rate_rad_s()[1] * std::polar(1.0, -phase);
-    acceleration += filter.acceleration_rad_s2()[1] * std::polar(1.0, -phase);
-  }
-  const double scale = 2 / static_cast<double>(samples);
-  return {scale * std::abs(rate), scale * std::abs(acceleration) / (2 * pi * frequency_hz)};
-}
-
-// Of the difference over one period, divided by 2 pi f.
-double difference_gain(double frequency_hz, double sampling_hz) {
-  const double x = pi * frequency_hz / sampling_hz;
-  return std::sin(x) / x;
-}
-
-// Of a second-order Butterworth low-pass after the bilinear transform.
-double butterworth_gain(double frequency_hz, double cutoff_hz, double sampling_hz) {
-  const double ratio =
-      std::tan(pi * frequency_hz / sampling_hz) / std::tan(pi * cutoff_hz / sampling_hz);
-  return 1 / std::sqrt(1 + std::pow(ratio, 4));
-}
-
-// Of y[n] = y[n-1] + w (x[n] - y[n-1]), with w = period / (period + 1 / (2 pi cutoff)).
-double first_order_gain(double frequency_hz, double cutoff_hz, double sampling_hz) {
-  const double weight = 1 / (1 + sampling_hz / (2 * pi * cutoff_hz));
-  const std::complex<double> z = std::polar(1.0, 2 * pi * frequency_hz / sampling_hz);
-  return std::abs(weight / (1.0 - (1 - weight) / z));
-}
 
 // At 1 kHz. The rate is 0 in the first sample and 1 rad/s from the second one on.
 //
@@ -76,18 +41,20 @@ TEST(GyroFilter, RateIsOfSecondOrderAndItsDerivativeOfFirstOrderMore) {
   for (const std::int64_t sampling_hz : {250, 1000, 8000}) {
     const auto sampling = static_cast<double>(sampling_hz);
     for (const double f : {1., 10., 30., 40., 60., 100.}) {
-      const Gains got = gains(Rate::hz(sampling_hz), GyroFilter(Rate::hz(sampling_hz)), f);
-      const double rate = butterworth_gain(f, 40, sampling);
-      EXPECT_NEAR(got.rate, rate, 2e-6) << sampling_hz << " " << f;
-      EXPECT_NEAR(got.acceleration,
-                  rate * difference_gain(f, sampling) * first_order_gain(f, 30, sampling), 2e-6)
-          << sampling_hz << " " << f;
+      const Rate at = Rate::hz(sampling_hz);
+      const auto [got_rate, got_acceleration] = measured_response(at, GyroFilter(at), f);
+      const Response rate = butterworth(f, 40, sampling);
+      const Response acceleration = rate * difference(f, sampling) * first_order(f, 30, sampling);
+      EXPECT_LE(std::abs(got_rate - rate), 2e-6) << sampling_hz << " " << f;
+      EXPECT_LE(std::abs(got_acceleration - acceleration), 2e-6) << sampling_hz << " " << f;
     }
   }
 }
 
 TEST(GyroFilter, RateGainIsRootOneHalfAtTheCutoff) {
-  EXPECT_NEAR(gains(Rate::hz(1000), GyroFilter(Rate::hz(1000), 80), 80).rate, std::sqrt(0.5), 1e-6);
+  const GyroFilter filter(Rate::hz(1000), 80);
+  const Response rate = measured_response(Rate::hz(1000), filter, 80).rate;
+  EXPECT_NEAR(std::abs(rate), std::sqrt(0.5), 1e-6);
 }
 
 // At 80 Hz the rates' cutoff of 40 Hz is half of the sampling rate. At 60 Hz so is the
@@ -100,18 +67,19 @@ TEST(GyroFilter, ACutoffThatIsNotBelowHalfTheRateLeavesThatValueUnfiltered) {
       filter.sample(sampling.tick(k), {rate, 0, 0});
       EXPECT_NEAR(filter.rate_rad_s()[0], rate, 1e-15) << k;
       const double dt_s = in_seconds(sampling.tick(k) - sampling.tick(k - 1));
-      const double difference = k > 0 ? (rate - last) / dt_s : 0;
-      EXPECT_NEAR(filter.acceleration_rad_s2()[0], difference, 1e-9) << k;
+      const double derivative = k > 0 ? (rate - last) / dt_s : 0;
+      EXPECT_NEAR(filter.acceleration_rad_s2()[0], derivative, 1e-9) << k;
       last = rate;
     }
   };
   expect_no_filter(Rate::hz(60), GyroFilter(Rate::hz(60)));
   expect_no_filter(Rate::hz(1000), GyroFilter(Rate::hz(1000), not_low_passed, not_low_passed));
   expect_no_filter(Rate::hz(1000), GyroFilter(Rate::hz(1000), std::nan(""), std::nan("")));
-  const Gains of_80 = gains(Rate::hz(80), GyroFilter(Rate::hz(80)), 10);
-  EXPECT_NEAR(of_80.rate, 1, 1e-6);
-  EXPECT_NEAR(of_80.acceleration, difference_gain(10, 80) * first_order_gain(10, 30, 80), 2e-6);
-  EXPECT_NEAR(gains(Rate::hz(84), GyroFilter(Rate::hz(84)), 40).rate, std::sqrt(0.5), 2e-6);
+  const auto [rate, acceleration] = measured_response(Rate::hz(80), GyroFilter(Rate::hz(80)), 10);
+  EXPECT_LE(std::abs(rate - 1.0), 1e-6);
+  EXPECT_LE(std::abs(acceleration - difference(10, 80) * first_order(10, 30, 80)), 2e-6);
+  const Response below_half = measured_response(Rate::hz(84), GyroFilter(Rate::hz(84)), 40).rate;
+  EXPECT_NEAR(std::abs(below_half), std::sqrt(0.5), 2e-6);
 }
 
 TEST(GyroFilter, ARampGivesItsSlopeAboutEachAxis) {

@@ -1,5 +1,5 @@
 // Both plants compared with exact solutions, and with each other. Measured here, judged by
-// truth_test.cpp and printed by truth_main.cpp.
+// truth_test.cpp and printed by truth_main.cpp of tests/harness/loop.
 #pragma once
 
 #include <string>
