@@ -145,9 +145,6 @@ struct Case {
   // Compared at the exact level, skipped at the other levels: the case is on a threshold of the
   // law, where correct arithmetic may differ.
   bool exact_only = false;
-  // Compared by tolerances at the exact level, too: its bits depend on the platform (exp and acos),
-  // not on the law.
-  bool numeric_only = false;
   Instances instances = Instances::one;
   std::optional<Flight> flight;               // empty: open loop, every input is scripted
   std::optional<AttitudeLoop> attitude_loop;  // only in a flight of the cascade

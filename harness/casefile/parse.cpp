@@ -269,10 +269,8 @@ void parse_body(const TomlTable& root, Case& parsed) {
   parsed.rates = parse_rates(root, parsed);
   parse_duration(root, parsed);
   if (root.has("level")) {
-    const std::string level = root.text("level");
-    parsed.exact_only = level == "exact";
-    parsed.numeric_only = level == "numeric";
-    if (level != "numeric" && level != "exact") root.error("level", "must be numeric or exact");
+    parsed.exact_only = root.text("level") == "exact";
+    if (!parsed.exact_only) root.error("level", "must be exact");
   }
   parsed.instances = parse_instances(root);
   parse_units(root, parsed);

@@ -113,8 +113,7 @@ Result<VectorDiagnosis> DiagnosisJob::run(std::size_t) {
   const ModuleUnderTest subject = subject_of(case_);
   if ((*host)->drive(subject, got)) return std::nullopt;
   const auto at = [&](Level level) {
-    return tolerances_of(case_, case_.numeric_only ? Level::numeric : level, port.fraction_bits,
-                         law.samples.size());
+    return tolerances_of(case_, level, port.fraction_bits, law.samples.size());
   };
   const bool is_exact = level_ == Level::exact && partner_ == nullptr;
   auto library = is_exact ? library_matches(got, port, case_, at(level_)) : LibraryMatches();

@@ -143,9 +143,7 @@ Result<VectorResult> evaluate_case(const Case& the_case, const Rate& rate, const
                                   rate, golden, parameters)
                             : expected_outputs(the_case, rate, golden);
   if (!expected) return tl::unexpected(expected.error());
-  const bool numeric_for_exact = level == Level::exact && the_case.numeric_only;
-  const bool numeric_for_events = level == Level::events && !has_events(the_case.module);
-  if (numeric_for_exact || numeric_for_events) level = Level::numeric;
+  if (level == Level::events && !has_events(the_case.module)) level = Level::numeric;
   if (level == Level::exact && !expected->is_exact) return other_bits(the_case, rate);
   result.by_golden = !expected->is_exact;
   result.compared = level;

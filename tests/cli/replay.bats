@@ -1,16 +1,9 @@
 load common
 
-recorded() { ls "$SOURCE"/golden/recorded/*/*.csv | grep -v tailsitter; }
-
 @test "the reference agrees to the bit with what the firmware recorded" {
-  run "$ATTEST" replay --level exact $(recorded)
+  run "$ATTEST" replay --level exact "$SOURCE"/golden/recorded/*/*.csv
   [ "$status" -eq 0 ]
-  has "79 of 79 traces conform"
-}
-
-@test "tailsitter recovery agrees within a tolerance" {
-  run "$ATTEST" replay "$SOURCE"/golden/recorded/px4-v1.5.5/tailsitter_250hz.csv
-  [ "$status" -eq 0 ]
+  has "81 of 81 traces conform"
 }
 
 @test "the profile comes from the provenance next to the trace, or from the option" {

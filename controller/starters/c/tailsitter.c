@@ -18,7 +18,9 @@ static void product(const float p[4], const float q[4], float out[4]) {
   out[3] = p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0];
 }
 
-static float sigmoid(float v) { return 1.0f / (1.0f + law_exp(-v)); }
+/* A value times the logistic function of v. It is one division, as in the recorded firmware: a
+ * product with 1 / (1 + exp(-v)) has other last bits. */
+static float times_sigmoid(float value, float v) { return value / (1.0f + law_exp(-v)); }
 
 /* Returns the angle [rad] between the thrust axis and that of the setpoint. `direction` [rad] is
  * that of the tilt axis in the body's x-y plane, counted from y. */
@@ -66,15 +68,16 @@ static void recovery_rates(float tilt, float direction, float rates_sp[3]) {
   const float x = tilt;
   const float y = LAW_PI / 2.0f - fold_direction(direction, sign);
   const float roll_share = y / (LAW_PI / 2.0f);
-  const float pitch_share = 1.38f * y + 0.8725f * y * y;
-  const float yaw_share = 3.168f * y - 0.3913f * y * y;
+  const float pitch_share = 1.38f * y + 0.8725f * (y * y);
+  const float yaw_share = 3.168f * y - 0.3913f * (y * y);
   const float roll =
-      -3.997f * x + roll_share * roll_share * (3.997f * x * sigmoid(4.013f * (2.133f - x)));
-  const float pitch = pitch_share * (-1.676f * x * sigmoid(2.642f * (0.3586f - x)) +
-                                     1.676f * x * law_exp(2.642f * (0.3586f - LAW_PI)) *
-                                         sigmoid(2.642f * (LAW_PI - 0.3586f)));
-  const float yaw = yaw_share * (2.726f * (x - LAW_PI) * sigmoid(2.298f * (x - 1.75f)) -
-                                 2.726f * (x - LAW_PI) * sigmoid(-1.75f * 2.298f));
+      -3.997f * x + roll_share * roll_share * times_sigmoid(3.997f * x, 4.013f * (2.133f - x));
+  const float pitch =
+      pitch_share * (times_sigmoid(-1.676f * x, 2.642f * (0.3586f - x)) +
+                     times_sigmoid(1.676f * x * law_exp(2.642f * (0.3586f - LAW_PI)),
+                                   2.642f * (LAW_PI - 0.3586f)));
+  const float yaw = yaw_share * (times_sigmoid(2.726f * (x - LAW_PI), 2.298f * (x - 1.75f)) -
+                                 times_sigmoid(2.726f * (x - LAW_PI), -1.75f * 2.298f));
   rates_sp[0] = roll * -sign[0];
   rates_sp[1] = pitch * (-sign[1] * 1.5f);
   rates_sp[2] = yaw * -sign[2];

@@ -11,7 +11,9 @@ namespace {
 
 constexpr float half_pi = pi / 2.0f;
 
-float sigmoid(float v) noexcept { return 1.0f / (1.0f + exp(-v)); }
+// A value times the logistic function of v. It is one division, as in the recorded firmware: a
+// product with 1 / (1 + exp(-v)) has other last bits.
+float times_sigmoid(float value, float v) noexcept { return value / (1.0f + exp(-v)); }
 
 struct Tilt {
   float angle = 0.0f;      // [rad] between the thrust axis and that of the setpoint
@@ -49,14 +51,14 @@ Vec3 recovery_rates(const Tilt& tilt) noexcept {
   const float x = tilt.angle;
   const float y = half_pi - direction;
   const float share = y / half_pi;
-  const float roll = -3.997f * x + share * share * (3.997f * x * sigmoid(4.013f * (2.133f - x)));
+  const float roll = -3.997f * x + share * share * times_sigmoid(3.997f * x, 4.013f * (2.133f - x));
   const float pitch =
-      (1.38f * y + 0.8725f * y * y) *
-      (-1.676f * x * sigmoid(2.642f * (0.3586f - x)) +
-       1.676f * x * exp(2.642f * (0.3586f - pi)) * sigmoid(2.642f * (pi - 0.3586f)));
+      (1.38f * y + 0.8725f * (y * y)) *
+      (times_sigmoid(-1.676f * x, 2.642f * (0.3586f - x)) +
+       times_sigmoid(1.676f * x * exp(2.642f * (0.3586f - pi)), 2.642f * (pi - 0.3586f)));
   const float yaw =
-      (3.168f * y - 0.3913f * y * y) * (2.726f * (x - pi) * sigmoid(2.298f * (x - 1.75f)) -
-                                        2.726f * (x - pi) * sigmoid(-1.75f * 2.298f));
+      (3.168f * y - 0.3913f * (y * y)) * (times_sigmoid(2.726f * (x - pi), 2.298f * (x - 1.75f)) -
+                                          times_sigmoid(2.726f * (x - pi), -1.75f * 2.298f));
   return {{roll * -sign[0], pitch * (-sign[1] * 1.5f), yaw * -sign[2]}};
 }
 

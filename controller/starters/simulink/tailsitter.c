@@ -15,7 +15,9 @@ static void quat_multiply(const real32_T u0[4], const real32_T u1[4], real32_T y
   y[3] = ((u0[0] * u1[3] + u0[1] * u1[2]) - u0[2] * u1[1]) + u0[3] * u1[0];
 }
 
-static real32_T sigmoid(real32_T u) { return 1.0F / (rt_exp(-u) + 1.0F); }
+/* A gain times the logistic function of u. It is one Divide block, as in the recorded firmware: a
+ * product with 1 / (1 + exp(-u)) has other last bits. */
+static real32_T times_sigmoid(real32_T gain, real32_T u) { return gain / (rt_exp(-u) + 1.0F); }
 
 /* Subsystem '<S2>/Tilt': angle between the thrust axes [rad], and the direction [rad] of the tilt
  * axis in the body's x-y plane, counted from y. */
@@ -72,13 +74,14 @@ static void recovery_rates(real32_T rtu_Angle, real32_T rtu_Direction, real32_T 
   }
   y = half_pi - y;
   Share = y / half_pi;
-  rty_Rates[0] = -3.997F * x + Share * Share * (3.997F * x * sigmoid((2.133F - x) * 4.013F));
-  rty_Rates[1] = (1.38F * y + 0.8725F * y * y) * (-1.676F * x * sigmoid((0.3586F - x) * 2.642F) +
-                                                  1.676F * x * rt_exp((0.3586F - RT_PIF) * 2.642F) *
-                                                      sigmoid((RT_PIF - 0.3586F) * 2.642F));
-  rty_Rates[2] =
-      (3.168F * y - 0.3913F * y * y) * ((x - RT_PIF) * 2.726F * sigmoid((x - 1.75F) * 2.298F) -
-                                        (x - RT_PIF) * 2.726F * sigmoid(-1.75F * 2.298F));
+  rty_Rates[0] = -3.997F * x + Share * Share * times_sigmoid(3.997F * x, (2.133F - x) * 4.013F);
+  rty_Rates[1] = (1.38F * y + 0.8725F * (y * y)) *
+                 (times_sigmoid(-1.676F * x, (0.3586F - x) * 2.642F) +
+                  times_sigmoid(1.676F * x * rt_exp((0.3586F - RT_PIF) * 2.642F),
+                                (RT_PIF - 0.3586F) * 2.642F));
+  rty_Rates[2] = (3.168F * y - 0.3913F * (y * y)) *
+                 (times_sigmoid((x - RT_PIF) * 2.726F, (x - 1.75F) * 2.298F) -
+                  times_sigmoid((x - RT_PIF) * 2.726F, -1.75F * 2.298F));
   rty_Rates[0] *= -Sign[0];
   rty_Rates[1] *= -Sign[1] * 1.5F;
   rty_Rates[2] *= -Sign[2];

@@ -97,7 +97,7 @@ TEST(CaseErrors, WrongValuesOfTheHead) {
   EXPECT_EQ(errors_of_text(with_line(4, "why = \"\"")), "4:1: must say why the case exists");
   EXPECT_THAT(errors_of_text(with_line(4, "why = 1")),
               HasSubstr("4:1: `why` must be text, found an integer"));
-  EXPECT_EQ(errors_of("level = \"strict\"\n"), "6:1: must be numeric or exact");
+  EXPECT_EQ(errors_of("level = \"strict\"\n"), "6:1: must be exact");
 }
 
 TEST(CaseErrors, UnknownKeysHaveASuggestion) {

@@ -87,8 +87,6 @@ TEST(ParseCase, ReadsToleranceOverrides) {
       "level = \"exact\"\n[tolerance]\nwhy = \"reason\"\n"
       "\"vehicle_rates_setpoint.roll\" = { absolute = 0.5, relative = 0.25 }\n");
   EXPECT_TRUE(parsed.exact_only);
-  EXPECT_FALSE(parsed.numeric_only);
-  EXPECT_TRUE(CaseFiles().parse("level = \"numeric\"\n" + CaseFiles::with(""))->numeric_only);
   EXPECT_EQ(parsed.tolerance_why, "reason");
   ASSERT_EQ(parsed.tolerances.size(), 1u);
   EXPECT_EQ(parsed.tolerances[0].channels, "vehicle_rates_setpoint.roll");

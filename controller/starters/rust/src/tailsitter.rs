@@ -87,13 +87,14 @@ fn recovery_rates(tilt: f32, axis: Vector) -> Vector {
     let (x, y) = (tilt, FRAC_PI_2 - direction);
     let roll_share = y / FRAC_PI_2;
 
-    let roll = -3.997 * x + roll_share * roll_share * (3.997 * x * sigmoid(4.013 * (2.133 - x)));
-    let at_pi = exp(2.642f32 * (0.3586 - PI)) * sigmoid(2.642 * (PI - 0.3586));
+    let roll = -3.997 * x + roll_share * roll_share * times_sigmoid(3.997 * x, 4.013 * (2.133 - x));
+    let at_pi = exp(2.642f32 * (0.3586 - PI));
     let pitch = (1.38 * y + 0.8725 * (y * y))
-        * (-1.676 * x * sigmoid(2.642 * (0.3586 - x)) + 1.676 * x * at_pi);
+        * (times_sigmoid(-1.676 * x, 2.642 * (0.3586 - x))
+            + times_sigmoid(1.676 * x * at_pi, 2.642 * (PI - 0.3586)));
     let yaw = (3.168 * y - 0.3913 * (y * y))
-        * (2.726 * (x - PI) * sigmoid(2.298 * (x - 1.75))
-            - 2.726 * (x - PI) * sigmoid(-1.75 * 2.298));
+        * (times_sigmoid(2.726 * (x - PI), 2.298 * (x - 1.75))
+            - times_sigmoid(2.726 * (x - PI), -1.75 * 2.298));
 
     Vector([roll, pitch, yaw]).times(Vector([-signs[0], -signs[1] * 1.5, -signs[2]]))
 }
@@ -111,6 +112,8 @@ fn first_quadrant(direction: f32) -> (f32, Vector) {
     }
 }
 
-fn sigmoid(v: f32) -> f32 {
-    1.0 / (1.0 + exp(-v))
+/// A value times the logistic function of `v`. It is one division, as in the recorded firmware: a
+/// product with 1 / (1 + exp(-v)) has other last bits.
+fn times_sigmoid(value: f32, v: f32) -> f32 {
+    value / (1.0 + exp(-v))
 }
