@@ -188,11 +188,13 @@ bool has_modules_only(const Groups& groups) {
   });
 }
 
-// Adds the optional modules of which some vectors are not good, although none failed.
-void say_which_modules_are_in_part(const Groups& groups, const RunResult& run,
-                                   std::vector<std::string>& missing) {
+// Adds the optional modules of which some vectors were not run or are not good, although none
+// failed.
+void say_which_modules_are_in_part(const Groups& groups, std::vector<std::string>& missing) {
   for (const auto& [name, group] : groups) {
-    if (!is_module(name) || !group.was_compared() || group.fails || is_whole(group, run)) continue;
+    const bool is_whole = std::ranges::all_of(
+        group.rates, [](const auto& rate) { return rate.second.good >= rate.second.in_suite; });
+    if (!is_module(name) || !group.was_compared() || group.fails || is_whole) continue;
     missing.push_back("only a part of " + name);
   }
 }
@@ -214,7 +216,7 @@ std::vector<std::string> missing_of(const Groups& groups, const RunResult& run) 
     missing.push_back(fmt::format("fixed step of {} Hz", run.fixed_step->to_string()));
   }
   if (has_modules_only(groups)) {
-    say_which_modules_are_in_part(groups, run, missing);
+    say_which_modules_are_in_part(groups, missing);
     return missing;
   }
   say_what_was_not_run(groups, run, missing);

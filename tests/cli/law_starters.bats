@@ -37,3 +37,19 @@ in_python="$SOURCE/controller/starters/python_law"
   [ "$status" -eq 1 ]
   has "look first at the rate law"
 }
+
+@test "the statement is about the laws that were judged" {
+  run "$ATTEST" run --group attitude_law,rate_law --profile px4-v1.16.0 --port "$in_c" --json r.json
+  [ "$status" -eq 0 ]
+  has "conformant: attitude_law, rate_law of px4-v1.16.0, numeric, 1 rate"
+  grep -q '"standing": "conformant"' r.json
+  run "$ATTEST" run --filter '*/rate_law/p_and_feed_forward' --profile px4-v1.16.0 --port "$in_c"
+  [ "$status" -eq 0 ]
+  has "because: only a part of rate_law"
+}
+
+@test "a port that has the laws alone is not said to lack the profile" {
+  run "$ATTEST" run --profile px4-v1.16.0 --group rates --rate 250 --port "$in_c"
+  [ "$status" -eq 0 ]
+  has "the port has no rate unit (extension attest.rate_unit.v1)"
+}

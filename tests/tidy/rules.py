@@ -85,7 +85,14 @@ def controller_stands_alone(tree: Tree):
             own = include.quoted and not include.path.startswith(("harness/", "tests/"))
             # A starter is compiled against the installed headers.
             library = include.path.startswith(
-                ("Eigen/", "tl/", "attest_unit.h", "attest_cascade.h", "attest_law.h", "attest_math.h")
+                (
+                    "Eigen/",
+                    "tl/",
+                    "attest_unit.h",
+                    "attest_cascade.h",
+                    "attest_law.h",
+                    "attest_math.h",
+                )
             )
             if not own and not library and not _STANDARD.fullmatch(include.path):
                 yield Finding(

@@ -147,6 +147,36 @@ TEST(Claim, ModulesAreOptional) {
   EXPECT_FALSE(only_claim(run).conforms()) << "a module that is there has to be right";
 }
 
+// A port that is a law alone.
+TEST(Claim, WithoutAnyUnitItIsAboutTheModules) {
+  RunResult run = complete_run({"attitude", "attitude_law", "mixer"});
+  for (VectorResult& result : run.results) {
+    if (result.group == "attitude") result.verdict = Verdict::unsupported;
+  }
+  EXPECT_TRUE(only_claim(run).conforms());
+  EXPECT_TRUE(only_claim(run).is_of_modules);
+  EXPECT_THAT(only_claim(run).modules, ElementsAre("attitude_law", "mixer"));
+  EXPECT_EQ(standing_of(run), Standing::conformant);
+
+  run.results.back().verdict = Verdict::skip;
+  EXPECT_THAT(only_claim(run).missing, ElementsAre("only a part of mixer"));
+  EXPECT_EQ(standing_of(run), Standing::partial);
+  const VectorResult last = run.results.back();
+  run.results.pop_back();  // at one of two rates
+  run.rates = {Rate::hz(100)};
+  EXPECT_THAT(only_claim(run).missing, ElementsAre("only a part of mixer"));
+  run.results.push_back(last);
+  run.results.back().verdict = Verdict::pass;
+
+  run.suite_is_released = false;
+  EXPECT_THAT(only_claim(run).missing, ElementsAre("custom suite"));
+  run.suite_is_released = true;
+
+  run.results.front().verdict = Verdict::pass;
+  EXPECT_FALSE(only_claim(run).is_of_modules) << "the port has a unit, so all of it counts";
+  EXPECT_FALSE(only_claim(run).conforms());
+}
+
 TEST(Claim, AFixedStepIsPartialAndNamesOnlyItself) {
   RunResult run = complete_run({"attitude"});
   run.fixed_step = Rate::hz(250);
