@@ -53,3 +53,20 @@ in_python="$SOURCE/controller/starters/python_law"
   [ "$status" -eq 0 ]
   has "the port has no rate unit (extension attest.rate_unit.v1)"
 }
+
+@test "a law is judged from files, with a row for each call" {
+  "$ATTEST" vectors calls --group rate_law --profile px4-v1.16.0 --exclude '*/not_finite' >/dev/null
+  "$PYTHON" "$SOURCE/tests/ports/recorded/rate_law.py" calls
+  run "$ATTEST" run --port recorded:calls --group rate_law --profile px4-v1.16.0
+  [ "$status" -eq 0 ]
+  has "PASS 15 of 18 vectors conform, 3 skip"
+}
+
+@test "a trace of a law is replayed" {
+  "$ATTEST" record px4-v1.16.0/rate_law/reset --rate 250 --out reset.csv
+  run "$ATTEST" replay reset.csv --port "$in_c" --level exact
+  [ "$status" -eq 0 ]
+  run "$ATTEST" replay reset.csv --port fault:cascade-i-factor-not-squared
+  [ "$status" -eq 1 ]
+  has "look first at the integrator"
+}
