@@ -7,6 +7,7 @@
 #include "harness/core/large_pages.hpp"
 #include "harness/loop/case_timing.hpp"
 #include "harness/loop/closed_loop.hpp"
+#include "harness/loop/open_loop.hpp"
 #include "harness/port/builtin.hpp"
 
 namespace attest {
@@ -122,7 +123,9 @@ tl::expected<PortUnits, PortFault> units_for(const Case& the_case, Port& port) {
   constexpr Module attitude_unit = Module::attitude_unit;
   PortUnits units{nullptr, made_by(port, the_case.module), nullptr};
   if (the_case.attitude_loop) units.attitude_unit = made_by(port, attitude_unit);
-  if (!units.unit && !units.attitude_unit) return tl::unexpected(no_profile(the_case.profile));
+  if (!units.unit && !units.attitude_unit) {
+    return tl::unexpected(why_no_unit(port, {the_case.profile, the_case.module}));
+  }
   if (units.unit && units.attitude_unit) return units;
   if (units.unit && the_case.attitude_loop && contains(port.modules(), attitude_unit)) {
     units.unit = nullptr;

@@ -325,12 +325,16 @@ ModuleUnderTest subject_of(const Case& the_case) {
 
 tl::expected<std::unique_ptr<Unit>, PortFault> make_unit(Port& port,
                                                          const ModuleUnderTest& subject) {
-  if (!contains(port.modules(), subject.module)) {
-    return tl::unexpected(lacks_module(port, subject));
+  if (contains(port.modules(), subject.module)) {
+    auto unit = port.create_unit(subject.module, subject.profile, subject.mixer);
+    if (unit) return unit;
   }
-  auto unit = port.create_unit(subject.module, subject.profile, subject.mixer);
-  if (!unit) return tl::unexpected(makes_none(port, subject));
-  return unit;
+  return tl::unexpected(why_no_unit(port, subject));
+}
+
+PortFault why_no_unit(Port& port, const ModuleUnderTest& subject) {
+  const bool has_module = contains(port.modules(), subject.module);
+  return has_module ? makes_none(port, subject) : lacks_module(port, subject);
 }
 
 std::optional<PortFault> drive(Port& port, const ModuleUnderTest& subject, Trace& trace) {

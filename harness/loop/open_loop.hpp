@@ -42,6 +42,10 @@ ModuleUnderTest subject_of(const Case& the_case);
 tl::expected<std::unique_ptr<Unit>, PortFault> make_unit(Port& port,
                                                          const ModuleUnderTest& subject);
 
+// The fault of a port that made no unit of the subject's module. Kind::profile, or
+// Kind::unsupported: the port makes another module of that profile, such as a law alone.
+PortFault why_no_unit(Port& port, const ModuleUnderTest& subject);
+
 // Steps a fresh instance of the subject's module through the trace. `subject.instances` says which
 // other instances of the port exist before it or at the same time. On two threads, the steps of a
 // port that is one at a time alternate. Kind::unsupported: the port cannot make the second instance

@@ -17,6 +17,14 @@ in_python="$SOURCE/controller/starters/python_law"
   has "the port makes no attitude law of profile px4-v1.18"
 }
 
+@test "without a unit the starter in C does not fly" {
+  run "$ATTEST" run --filter '*/flight/hover@100-400hz-iris-ode' --profile px4-v1.16.0 \
+    --filter '*/rate_law/d' --port "$in_c"
+  [ "$status" -eq 0 ]
+  has "1 of 2 vectors conform, 1 unsupported"
+  has "the port has no rate unit"
+}
+
 @test "the starter in Python has them to the bit, too" {
   # One profile: the law is the same in the others.
   run "$ATTEST" run --level exact --group attitude_law,rate_law --profile px4-v1.17 \

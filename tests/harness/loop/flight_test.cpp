@@ -97,5 +97,21 @@ TEST(UnitsFor, APortThatMakesOneUnitAtATimeDoesNotFlyWithHalfOfItself) {
               testing::HasSubstr("makes no attitude unit while it has a rate unit"));
 }
 
+// A port of the laws alone: the profile is supported, but there is no unit to fly.
+class LawsOnly : public CountingCascade {
+ public:
+  LawsOnly() : CountingCascade(only(Module::rate_law), 1) {}
+  ModuleSet modules() const override { return only(Module::rate_law); }
+};
+
+TEST(UnitsFor, FlightsOfAPortOfTheLawsAloneAreUnsupported) {
+  LawsOnly port;
+  const auto units =
+      units_for(*parse_case(source_folder / "cases/px4-v1.16.0/flight/hover.toml"), port);
+  ASSERT_FALSE(units);
+  EXPECT_EQ(units.error().kind, PortFault::Kind::unsupported);
+  EXPECT_THAT(units.error().what, testing::HasSubstr("has no rate unit"));
+}
+
 }  // namespace
 }  // namespace attest
