@@ -204,18 +204,14 @@ PortFault lacks_module(Port& port, const ModuleUnderTest& subject) {
 }
 
 PortFault makes_none(Port& port, const ModuleUnderTest& subject) {
-  using enum PortFault::Kind;
+  std::string title(info_of(subject.module).title);
   if (subject.module == Module::mixer) {
-    return {
-        unsupported, 0,
-        fmt::format("the port makes no mixer `{}` of profile {}", subject.mixer, subject.profile)};
+    title = fmt::format("mixer `{}`", subject.mixer);
+  } else if (!makes_another(port, subject)) {
+    return no_profile(subject);
   }
-  if (makes_another(port, subject)) {
-    return {unsupported, 0,
-            fmt::format("the port makes no {} of profile {}", info_of(subject.module).title,
-                        subject.profile)};
-  }
-  return no_profile(subject);
+  return {PortFault::Kind::unsupported, 0,
+          fmt::format("the port makes no {} of profile {}", title, subject.profile)};
 }
 
 PortFault makes_one_profile(const std::string& profile, const std::string& other) {
@@ -325,11 +321,11 @@ ModuleUnderTest subject_of(const Case& the_case) {
 
 tl::expected<std::unique_ptr<Unit>, PortFault> make_unit(Port& port,
                                                          const ModuleUnderTest& subject) {
-  if (contains(port.modules(), subject.module)) {
-    auto unit = port.create_unit(subject.module, subject.profile, subject.mixer);
-    if (unit) return unit;
-  }
-  return tl::unexpected(why_no_unit(port, subject));
+  const bool has_module = contains(port.modules(), subject.module);
+  auto unit =
+      has_module ? port.create_unit(subject.module, subject.profile, subject.mixer) : nullptr;
+  if (!unit) return tl::unexpected(why_no_unit(port, subject));
+  return unit;
 }
 
 PortFault why_no_unit(Port& port, const ModuleUnderTest& subject) {

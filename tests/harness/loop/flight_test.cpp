@@ -97,11 +97,20 @@ TEST(UnitsFor, APortThatMakesOneUnitAtATimeDoesNotFlyWithHalfOfItself) {
               testing::HasSubstr("makes no attitude unit while it has a rate unit"));
 }
 
-// A port of the laws alone: the profile is supported, but there is no unit to fly.
-class LawsOnly : public CountingCascade {
+// The profile is supported, but there is no unit to fly.
+class LawsOnly final : public Port {
  public:
-  LawsOnly() : CountingCascade(only(Module::rate_law), 1) {}
+  std::string name() const override { return "laws"; }
+  std::string version() const override { return "1"; }
   ModuleSet modules() const override { return only(Module::rate_law); }
+  std::unique_ptr<Unit> create_unit(Module module, const std::string&,
+                                    const std::string&) override {
+    if (module != Module::rate_law) return nullptr;
+    return std::make_unique<CountedUnit>(living_);
+  }
+
+ private:
+  int living_ = 0;
 };
 
 TEST(UnitsFor, FlightsOfAPortOfTheLawsAloneAreUnsupported) {
