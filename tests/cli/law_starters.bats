@@ -13,8 +13,13 @@ in_python="$SOURCE/controller/starters/python_law"
 @test "the starter in C has the laws of v1.14 to v1.17, and the rate law of v1.18, to the bit" {
   run "$ATTEST" run --level exact --group attitude_law,rate_law --port "$in_c"
   [ "$status" -eq 0 ]
-  has "PASS 174 of 249 vectors conform, 21 unsupported, 54 skip"
-  has "the port makes no attitude law of profile px4-v1.18"
+  # All vectors, but for these three reasons.
+  [[ $output =~ PASS\ ([0-9]+)\ of ]]
+  [ "${BASH_REMATCH[1]}" -ge 174 ]
+  [ "$(grep -cE '^  [0-9]+ (skip|unsupported)' <<<"$output")" -eq 3 ]
+  has "unsupported: the port makes no attitude law of profile px4-v1.18"
+  has "skip: the port does not support profile px4-v1.3.4"
+  has "skip: the port does not support profile px4-v1.5.5"
 }
 
 @test "without a unit the starter in C does not fly" {
@@ -30,7 +35,9 @@ in_python="$SOURCE/controller/starters/python_law"
   run "$ATTEST" run --level exact --group attitude_law,rate_law --profile px4-v1.17 \
     --port "proc:$PYTHON $in_python/port.py"
   [ "$status" -eq 0 ]
-  has "PASS 39 of 39 vectors conform"
+  [[ $output =~ PASS\ ([0-9]+)\ of\ ([0-9]+) ]]
+  [ "${BASH_REMATCH[1]}" -ge 39 ]
+  [ "${BASH_REMATCH[1]}" -eq "${BASH_REMATCH[2]}" ]
   run "$ATTEST" smoke --port "proc:$PYTHON $in_python/port.py"
   [ "$status" -eq 0 ]
   lacks BAD
