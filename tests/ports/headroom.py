@@ -175,8 +175,10 @@ def table(args, law, profiles):
     selection = [word for profile in profiles for word in ("--profile", profile)]
     if law is LAWS["laws"]:
         selection += ["--group", ",".join(LAW_GROUPS)]
+    elif args.group:
+        groups = [group for group in args.group if group not in LAW_GROUPS]
+        selection += [word for group in groups for word in ("--group", group)]
     else:
-        selection += [word for group in args.group for word in ("--group", group)]
         selection += [word for group in LAW_GROUPS for word in ("--exclude", f"{group}/*")]
     selection += ["--rate", args.rate] if args.rate else []
     kinds = law["kinds"]
