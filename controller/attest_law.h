@@ -30,7 +30,7 @@ typedef struct attest_attitude_law_inputs {
   } vehicle_attitude;
   struct {
     uint64_t timestamp;     /* [us] px4-v1.18 only: the first setpoint starts the reference model, a
-                             * later timestamp moves it, and the same one leaves it as it is */
+                             * later timestamp moves it, and any other leaves it as it is */
     float q_d[4];           /* v1.14: of any norm; the law makes it 1 */
     float yaw_sp_move_rate; /* [rad/s] about the world's z; v1.14: ignored if not finite */
   } vehicle_attitude_setpoint;
@@ -79,14 +79,14 @@ typedef struct attest_rate_law_inputs {
     float rates[3];    /* [rad/s] v1.5: the D term acts on the difference */
     float rates_sp[3]; /* [rad/s] px4-v1.3.4: the feed-forward acts on the difference */
   } previous;
-  struct { /* roll, pitch, yaw */
+  struct { /* roll, pitch, yaw; v1.14: p, i and d times K */
     float p[3], i[3], d[3], ff[3];
     float integral_max[3]; /* v1.14 */
     float tpa_break;       /* px4-v1.5.5: MC_TPA_BREAK and MC_TPA_SLOPE */
     float tpa_slope;
   } rate_gains;
   struct {
-    float dt;       /* [s] since the call before */
+    float dt;       /* [s] since the call before; the law does not limit it */
     uint8_t landed; /* v1.14: flag, the integral stands still */
     uint8_t reset;  /* flag: the integral is set to 0 before this call uses it */
   } law;

@@ -50,11 +50,13 @@ bool is_one_of(const std::string& name, const std::vector<std::string>& names) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// The newest profile of a released version that has the module.
+// The newest profile of a released version that has the module. Those of the cascade are newer.
 std::string newest_profile_of(Module module) {
   const auto all = known_profiles();
   const auto found = std::find_if(all.begin(), all.end(), [&](const ProfileInfo& profile) {
-    return contains(profile.modules, module) && profile.as_of.empty();
+    const bool is_newest =
+        !info_of(module).is_law() || contains(profile.modules, Module::rate_unit);
+    return contains(profile.modules, module) && is_newest && profile.as_of.empty();
   });
   return std::string(found == all.end() ? default_profile : found->name);
 }
