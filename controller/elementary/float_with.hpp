@@ -4,11 +4,15 @@
 // finds them because a FloatWith<Functions> is declared here. The rest of its arithmetic is that of
 // float, so outputs differ from those of the law with float only because of the functions.
 //
+// If Functions has a string_view `caller`, it is set before each call: to the name of the function
+// of the law that makes the call, such as "tilt_error".
+//
 // A plain value; any thread.
 #pragma once
 
 #include <cmath>
 #include <compare>
+#include <string_view>
 #include <type_traits>
 
 #include <Eigen/Core>
@@ -34,12 +38,30 @@ class FloatWith {
   FloatWith& operator*=(FloatWith b) { return *this = *this * b; }
   friend constexpr auto operator<=>(FloatWith a, FloatWith b) = default;
 
-  friend FloatWith sin(FloatWith x) { return Functions::sin(x.value_); }
-  friend FloatWith cos(FloatWith x) { return Functions::cos(x.value_); }
-  friend FloatWith asin(FloatWith x) { return Functions::asin(x.value_); }
-  friend FloatWith acos(FloatWith x) { return Functions::acos(x.value_); }
-  friend FloatWith exp(FloatWith x) { return Functions::exp(x.value_); }
-  friend FloatWith atan2(FloatWith y, FloatWith x) { return Functions::atan2(y.value_, x.value_); }
+  friend FloatWith sin(FloatWith x, const char* caller = __builtin_FUNCTION()) {
+    set_caller(caller);
+    return Functions::sin(x.value_);
+  }
+  friend FloatWith cos(FloatWith x, const char* caller = __builtin_FUNCTION()) {
+    set_caller(caller);
+    return Functions::cos(x.value_);
+  }
+  friend FloatWith asin(FloatWith x, const char* caller = __builtin_FUNCTION()) {
+    set_caller(caller);
+    return Functions::asin(x.value_);
+  }
+  friend FloatWith acos(FloatWith x, const char* caller = __builtin_FUNCTION()) {
+    set_caller(caller);
+    return Functions::acos(x.value_);
+  }
+  friend FloatWith exp(FloatWith x, const char* caller = __builtin_FUNCTION()) {
+    set_caller(caller);
+    return Functions::exp(x.value_);
+  }
+  friend FloatWith atan2(FloatWith y, FloatWith x, const char* caller = __builtin_FUNCTION()) {
+    set_caller(caller);
+    return Functions::atan2(y.value_, x.value_);
+  }
 
   friend FloatWith sqrt(FloatWith x) { return std::sqrt(x.value_); }
   friend FloatWith abs(FloatWith x) { return std::abs(x.value_); }
@@ -47,6 +69,13 @@ class FloatWith {
   friend bool isfinite(FloatWith x) { return std::isfinite(x.value_); }
 
  private:
+  static void set_caller([[maybe_unused]] std::string_view name) {
+    // gcc appends the arguments of a template.
+    if constexpr (requires { Functions::caller = name; }) {
+      Functions::caller = name.substr(0, name.find('<'));
+    }
+  }
+
   float value_ = 0;
 };
 

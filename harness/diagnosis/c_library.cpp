@@ -4,7 +4,10 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -29,20 +32,32 @@ constexpr std::array<const char*, 6> function_names = {"sinf",  "cosf", "asinf",
                                                        "acosf", "expf", "atan2f"};
 static_assert(library_call_sets == 1 << function_names.size());
 
-// FloatWith has static functions, so the choice is a variable of the thread that steps the law.
-thread_local LibraryCalls chosen = 0;
-// The functions of which the library had another result than attest, in a call of the law.
-thread_local LibraryCalls differed = 0;
+// The calls for which the law takes the library's result: of these functions, or a single one.
+struct Chosen {
+  LibraryCalls set = 0;
+  LibraryCall single = {};
+};
+
+// For each function, its calls for which the library had another result than attest.
+using Differed = std::array<std::set<LibraryCall>, function_names.size()>;
+
+// FloatWith has static functions, so these are variables of the thread that steps the law.
+thread_local Chosen chosen;
+thread_local Differed differed;
+
+struct Caller {
+  inline static thread_local std::string_view caller = "";
+};
 
 float choose(std::size_t function, float library, float own) {
-  const LibraryCalls call = 1U << function;
   const bool same = std::bit_cast<std::uint32_t>(library) == std::bit_cast<std::uint32_t>(own);
   if (same || (std::isnan(library) && std::isnan(own))) return own;
-  differed |= call;
-  return (chosen & call) != 0 ? library : own;
+  const auto single = fmt::format("{}@{}", function_names[function], Caller::caller);
+  differed[function].insert(single);
+  return (chosen.set >> function & 1) != 0 || chosen.single == single ? library : own;
 }
 
-struct ChosenFunctions {
+struct ChosenFunctions : Caller {
   static float sin(float x) { return choose(0, std::sin(x), attest_sinf(x)); }
   static float cos(float x) { return choose(1, std::cos(x), attest_cosf(x)); }
   static float asin(float x) { return choose(2, std::asin(x), attest_asinf(x)); }
@@ -65,10 +80,10 @@ constexpr attest_unit law_in_chosen =
         "attest-c-library", "of this machine", extension_in_chosen);
 
 // The number of ticks at which the law has the port's outputs when it makes these calls.
-Result<std::size_t> matches(Trace got, LibraryCalls calls, const Declarations& port,
-                            const Case& the_case, const Tolerances& tolerances) {
-  chosen = calls;
-  differed = 0;
+Result<std::size_t> matches(Trace got, Chosen calls, const Declarations& port, const Case& the_case,
+                            const Tolerances& tolerances) {
+  chosen = std::move(calls);
+  differed = {};
   AbiPort in_chosen(law_in_chosen);
   ModuleUnderTest subject = subject_of(the_case);
   subject.instances = Instances::one;  // on this thread
@@ -78,6 +93,14 @@ Result<std::size_t> matches(Trace got, LibraryCalls calls, const Declarations& p
   if (port.is_recorded) fill_in(port.not_recorded, law, got);
   return law.samples.size() - compare(got, law, tolerances).deviating_ticks;
 }
+
+faults::Fault port(std::string_view id, std::string_view what) {
+  return {id,          "",     faults::Stage::functions, what, "a result that is off by an ulp",
+          "C library", nullptr};
+}
+
+constexpr const char* remedy =
+    "link attest::math (with the starters: ATTEST_MATH=1), or judge at the level numeric";
 
 std::vector<faults::Fault> make_ports() {
   // Never destroyed, because the faults refer to these texts.
@@ -91,40 +114,83 @@ std::vector<faults::Fault> make_ports() {
     auto& [id, what] = texts[calls];
     id = fmt::format("libm-{}", fmt::join(names, "-"));
     what = fmt::format(
-        "calls {} of the C library, which on this machine {} not always correctly rounded: link "
-        "attest::math (with the starters: ATTEST_MATH=1), or judge at the level numeric",
-        fmt::join(names, ", "), names.size() == 1 ? "is" : "are");
-    ports.push_back({id, "", faults::Stage::functions, what, "a result that is off by an ulp",
-                     "C library", nullptr});
+        "calls {} of the C library, which on this machine {} not always correctly rounded: {}",
+        fmt::join(names, ", "), names.size() == 1 ? "is" : "are", remedy);
+    ports.push_back(port(id, what));
   }
   return ports;
 }
 
+// Adds the matches with single calls.
+Result<LibraryMatches> with_single_calls(LibraryMatches matched,
+                                         const std::vector<Differed>& differed_with,
+                                         const Trace& got, const Declarations& port,
+                                         const Case& the_case, const Tolerances& tolerances) {
+  for (std::size_t i = 0; i < function_names.size(); ++i) {
+    for (const LibraryCall& single : differed_with[0][i]) {
+      // If no other call of the function ever differs, the law makes the same steps as with all.
+      if (differed_with[1U << i][i] == std::set{single}) {
+        matched.with_single[single] = matched.with_set[1U << i];
+        continue;
+      }
+      const auto found = matches(got, {0, single}, port, the_case, tolerances);
+      if (!found) return tl::unexpected(found.error());
+      matched.with_single[single] = *found;
+    }
+  }
+  return matched;
+}
+
 }  // namespace
+
+std::size_t LibraryMatches::with(const LibraryCall& single) const {
+  const auto found = with_single.find(single);
+  return found == with_single.end() ? with_set[0] : found->second;
+}
 
 Result<LibraryMatches> library_matches(const Trace& got, const Declarations& port,
                                        const Case& the_case, const Tolerances& tolerances) {
   LibraryMatches matched;
-  std::vector<LibraryCalls> differed_with;
+  std::vector<Differed> differed_with;
   for (LibraryCalls calls = 0; calls < library_call_sets; ++calls) {
-    const LibraryCalls last = std::bit_floor(calls), others = calls & ~last;
+    const LibraryCalls others = calls & ~std::bit_floor(calls);
     // Without a difference in the last function, the law makes the same steps as without it.
-    if (calls != 0 && (differed_with[others] & last) == 0) {
+    if (calls != 0 && differed_with[others][std::bit_width(calls) - 1].empty()) {
       differed_with.push_back(differed_with[others]);
-      matched.push_back(matched[others]);
+      matched.with_set.push_back(matched.with_set[others]);
       continue;
     }
-    const auto found = matches(got, calls, port, the_case, tolerances);
+    const auto found = matches(got, {calls}, port, the_case, tolerances);
     if (!found) return tl::unexpected(found.error());
     differed_with.push_back(differed);
-    matched.push_back(*found);
+    matched.with_set.push_back(*found);
   }
-  return matched;
+  return with_single_calls(std::move(matched), differed_with, got, port, the_case, tolerances);
 }
 
 const faults::Fault& port_that_calls(LibraryCalls calls) {
   static const std::vector<faults::Fault> ports = make_ports();
   return ports[calls];
+}
+
+const faults::Fault& port_that_calls(const LibraryCall& single) {
+  struct Described {
+    std::string id, what;
+    faults::Fault fault;
+  };
+  static auto& ports = *new std::map<LibraryCall, Described>;  // never destroyed
+  const auto [place, is_new] = ports.try_emplace(single);
+  Described& one = place->second;
+  if (is_new) {
+    const std::size_t at = single.find('@');
+    one.id = "libm-" + single;
+    one.what = fmt::format(
+        "calls {} of the C library where the law has `{}`, and elsewhere a correctly rounded one. "
+        "That of the C library is not always correctly rounded on this machine: {}",
+        single.substr(0, at), single.substr(at + 1), remedy);
+    one.fault = port(one.id, one.what);
+  }
+  return one.fault;
 }
 
 }  // namespace attest

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "controller/faults/fault.hpp"
@@ -18,17 +20,26 @@ namespace attest {
 using LibraryCalls = unsigned;
 inline constexpr LibraryCalls library_call_sets = 1 << 6;
 
-// For each set of calls, the number of ticks at which the reference with these calls has the port's
-// outputs. Element 0 is that of the reference itself. Empty: not compared.
-using LibraryMatches = std::vector<std::size_t>;
+// One of these functions, and the function of the law that calls it: "atan2f@tilt_error".
+using LibraryCall = std::string;
 
-// `got` has the port's outputs, which are compared at the level of `tolerances`. A set that a run
-// of the reference cannot tell from a smaller one is not run again.
+// The number of ticks at which the reference has the port's outputs if it calls the C library.
+struct LibraryMatches {
+  std::vector<std::size_t> with_set;               // element 0: the reference itself
+  std::map<LibraryCall, std::size_t> with_single;  // only calls that matter in this vector
+
+  // Without a call that does not matter here, the reference has the same outputs.
+  std::size_t with(const LibraryCall& single) const;
+};
+
+// `got` has the port's outputs, which are compared at the level of `tolerances`. Calls that a run
+// of the reference cannot tell from fewer ones are not run again.
 Result<LibraryMatches> library_matches(const Trace& got, const Declarations& port,
                                        const Case& the_case, const Tolerances& tolerances);
 
 // Describes a port that makes these calls. It is not in the catalogue of faults: such a port is
-// correct. The reference stays valid until the program ends.
+// correct. The reference stays valid until the program ends. One thread at a time.
 const faults::Fault& port_that_calls(LibraryCalls calls);
+const faults::Fault& port_that_calls(const LibraryCall& single);
 
 }  // namespace attest

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
 #include <map>
+#include <set>
 #include <tuple>
 
 namespace attest {
@@ -189,18 +191,45 @@ void find_pair(const std::vector<Record>& records, const std::vector<std::size_t
   diagnosis.unexplained = all.size() - explained;
 }
 
+bool passes(const VectorSimilarity& vector) { return vector.library.with_set[0] == vector.ticks; }
+
+// Calls of the C library that may explain the deviations.
+struct CandidateCalls {
+  const faults::Fault* port;
+  int functions;
+  bool all;  // all calls of these functions, not a single one
+  std::function<std::size_t(const LibraryMatches&)> matched;
+};
+
+std::vector<CandidateCalls> candidate_calls(const std::vector<VectorSimilarity>& vectors) {
+  std::vector<CandidateCalls> candidates;
+  for (LibraryCalls calls = 1; calls < library_call_sets; ++calls) {
+    candidates.push_back({&port_that_calls(calls), std::popcount(calls), true,
+                          [calls](const LibraryMatches& one) { return one.with_set[calls]; }});
+  }
+  std::set<LibraryCall> single_calls;
+  for (const VectorSimilarity& vector : vectors) {
+    for (const auto& [single, matched] : vector.library.with_single) single_calls.insert(single);
+  }
+  for (const LibraryCall& single : single_calls) {
+    candidates.push_back({&port_that_calls(single), 1, false,
+                          [single](const LibraryMatches& one) { return one.with(single); }});
+  }
+  return candidates;
+}
+
 // A suspect that makes these calls. Empty if the calls are refuted, because they do not explain a
 // vector that passes or deviates by more than rounding, or if they explain too little.
-std::optional<Suspect> suspect_that_calls(LibraryCalls calls,
+std::optional<Suspect> suspect_that_calls(const CandidateCalls& calls,
                                           const std::vector<VectorSimilarity>& vectors) {
   Suspect suspect;
-  suspect.fault = &port_that_calls(calls);
+  suspect.fault = calls.port;
   for (const VectorSimilarity& vector : vectors) {
-    const bool passes = vector.library[0] == vector.ticks;
-    const bool is_explained = vector.library[calls] == vector.ticks;
-    if (!is_explained && (passes || vector.deviates)) return std::nullopt;
-    if (passes) continue;
-    suspect.matched += vector.library[calls];
+    const std::size_t matched = calls.matched(vector.library);
+    const bool is_explained = matched == vector.ticks;
+    if (!is_explained && (passes(vector) || vector.deviates)) return std::nullopt;
+    if (passes(vector)) continue;
+    suspect.matched += matched;
     suspect.ticks += vector.ticks;
     suspect.explained += is_explained ? 1 : 0;
     ++suspect.failing;
@@ -211,14 +240,15 @@ std::optional<Suspect> suspect_that_calls(LibraryCalls calls,
   return suspect;
 }
 
-// Of those that explain the most vectors, the one with the fewest functions.
+// Of those that explain the most vectors, the one with the fewest functions. All calls of a
+// function come before a single one that explains no more.
 std::optional<Suspect> find_library_calls(const std::vector<VectorSimilarity>& vectors) {
   std::optional<Suspect> best;
-  std::tuple<std::size_t, int, std::size_t> best_rank;
-  for (LibraryCalls calls = 1; calls < library_call_sets; ++calls) {
+  std::tuple<std::size_t, int, std::size_t, bool> best_rank;
+  for (const CandidateCalls& calls : candidate_calls(vectors)) {
     auto suspect = suspect_that_calls(calls, vectors);
     if (!suspect) continue;
-    const std::tuple rank(suspect->explained, -std::popcount(calls), suspect->matched);
+    const std::tuple rank(suspect->explained, -calls.functions, suspect->matched, calls.all);
     if (!best || rank > best_rank) {
       best = std::move(suspect);
       best_rank = rank;
@@ -230,13 +260,13 @@ std::optional<Suspect> find_library_calls(const std::vector<VectorSimilarity>& v
 }
 
 std::optional<Diagnosis> diagnose_library_calls(const std::vector<VectorSimilarity>& vectors) {
-  const auto lacks_library = [](const VectorSimilarity& one) { return one.library.empty(); };
+  const auto lacks_library = [](const auto& one) { return one.library.with_set.empty(); };
   if (std::any_of(vectors.begin(), vectors.end(), lacks_library)) return std::nullopt;
   const auto suspect = find_library_calls(vectors);
   if (!suspect) return std::nullopt;
   std::vector<std::size_t> failing;
   for (std::size_t v = 0; v < vectors.size(); ++v) {
-    if (vectors[v].library[0] != vectors[v].ticks) failing.push_back(v);
+    if (!passes(vectors[v])) failing.push_back(v);
   }
   Diagnosis diagnosis;
   diagnosis.vectors = vectors.size();

@@ -73,7 +73,8 @@ json to_json(const VectorDiagnosis& diagnosis) {
           {"faults", rows},
           {"stages", diagnosis->stages.to_ulong()},
           {"case", diagnosis->case_id},
-          {"library", diagnosis->library}};
+          {"library", diagnosis->library.with_set},
+          {"single_calls", diagnosis->library.with_single}};
 }
 
 VectorDiagnosis diagnosis_from(const json& in) {
@@ -87,7 +88,8 @@ VectorDiagnosis diagnosis_from(const json& in) {
   }
   out.stages = StageSet(in.at("stages").get<unsigned long>());
   out.case_id = in.at("case").get<std::string>();
-  out.library = in.at("library").get<LibraryMatches>();
+  in.at("library").get_to(out.library.with_set);
+  in.at("single_calls").get_to(out.library.with_single);
   return out;
 }
 

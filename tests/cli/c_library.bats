@@ -49,6 +49,14 @@ conforms() {
   conforms || has '`libm-atan2f`: calls atan2f of the C library'
 }
 
+@test "a single call of the C library is named by its place in the law" {
+  caller c ""
+  sed -i 's/angle = law_atan2(/angle = atan2f(/' c/attitude.c
+  cc -O2 -std=c11 -ffp-contract=off -fPIC -shared -I"$SOURCE/controller" -o c.so c/*.c -lm
+  run "$ATTEST" run "${in_v1_5_5[@]}" --level exact --port lib:./c.so
+  conforms || has '`libm-atan2f@tilt_error`: calls atan2f of the C library where the law has'
+}
+
 @test "at the level numeric, a port that calls the C library passes" {
   caller c_cascade "sin cos asin acos atan2"
   run "$ATTEST" run "${in_cascade[@]}" --level numeric --port lib:./c_cascade.so

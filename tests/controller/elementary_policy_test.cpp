@@ -1,5 +1,7 @@
 #include <bit>
 #include <cmath>
+#include <set>
+#include <string_view>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -23,7 +25,12 @@ struct OwnFunctions {
 
 // Each result is one ulp too small.
 struct InaccurateFunctions {
-  static float below(float x) { return std::nextafter(x, -INFINITY); }
+  inline static std::string_view caller;
+  inline static std::set<std::string_view> callers;
+  static float below(float x) {
+    callers.insert(caller);
+    return std::nextafter(x, -INFINITY);
+  }
   static float sin(float x) { return below(attest_sinf(x)); }
   static float cos(float x) { return below(attest_cosf(x)); }
   static float asin(float x) { return below(attest_asinf(x)); }
@@ -88,6 +95,13 @@ TEST(ElementaryPolicy, RecoveryTakesTheFunctionsOfItsScalar) {
   const Bits law = recovery_outputs<float>();
   EXPECT_EQ(law, recovery_outputs<FloatWith<OwnFunctions>>());
   EXPECT_NE(law, recovery_outputs<FloatWith<InaccurateFunctions>>());
+}
+
+TEST(ElementaryPolicy, FunctionsCanAskWhichFunctionOfTheLawCallsThem) {
+  InaccurateFunctions::callers.clear();
+  recovery_outputs<FloatWith<InaccurateFunctions>>();
+  EXPECT_EQ(InaccurateFunctions::callers,
+            (std::set<std::string_view>{"arc_cosine", "optimal_rates", "tilt", "times_sigmoid"}));
 }
 
 }  // namespace

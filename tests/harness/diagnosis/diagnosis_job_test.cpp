@@ -12,10 +12,12 @@
 namespace attest {
 namespace {
 
+using testing::AnyOf;
 using testing::Each;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Lt;
+using testing::Pair;
 using testing::SizeIs;
 
 // A vector on which a dropped yaw weight and a missing attenuation change the outputs.
@@ -103,11 +105,18 @@ TEST_F(DiagnosisJobTest, AtTheLevelExactTheCallsOfTheCLibraryAreTried) {
     return DiagnosisJob(suite_[0], Rate::hz(250), nullptr, here(port), level).run(0).value();
   };
   const LibraryMatches right = found("builtin", Level::exact)->library;
-  ASSERT_THAT(right, SizeIs(library_call_sets));
+  ASSERT_THAT(right.with_set, SizeIs(library_call_sets));
   constexpr LibraryCalls atan2f = 1 << 5;
-  for (LibraryCalls calls = 0; calls < atan2f; ++calls) EXPECT_EQ(right[calls], 30u) << calls;
-  EXPECT_THAT(found("fault:tpa-missing", Level::exact)->library, Each(Lt(30u)));
-  EXPECT_THAT(found("builtin", Level::numeric)->library, IsEmpty());
+  for (LibraryCalls calls = 0; calls < atan2f; ++calls) {
+    EXPECT_EQ(right.with_set[calls], 30u) << calls;
+  }
+  for (const auto& [single, matched] : right.with_single) {
+    EXPECT_THAT(single, AnyOf("atan2f@tilt_error", "atan2f@yaw_error"));
+    EXPECT_LT(matched, 30u) << single;
+  }
+  EXPECT_EQ(right.with("atan2f@unheard_of"), 30u);
+  EXPECT_THAT(found("fault:tpa-missing", Level::exact)->library.with_set, Each(Lt(30u)));
+  EXPECT_THAT(found("builtin", Level::numeric)->library.with_set, IsEmpty());
 }
 
 TEST_F(DiagnosisJobTest, APortThatGoesWrongHasNoDiagnosis) {
@@ -149,8 +158,12 @@ TEST(DiagnosisCodec, AResultComesBackAsItWas) {
   };
   for (const bool deviates : {true, false}) {
     const StageSet stages = only(Stage::sticks) | only(Stage::actuators);
-    const auto one = back(
-        VectorSimilarity{30, deviates, {{1, 2, 3}, {4, 5, 6, true}}, stages, "modes/acro", {7, 8}});
+    const auto one = back(VectorSimilarity{30,
+                                           deviates,
+                                           {{1, 2, 3}, {4, 5, 6, true}},
+                                           stages,
+                                           "modes/acro",
+                                           {{7, 8}, {{"expf@decay", 9}}}});
     ASSERT_TRUE(one && *one);
     EXPECT_EQ((*one)->ticks, 30u);
     EXPECT_EQ((*one)->deviates, deviates);
@@ -162,7 +175,8 @@ TEST(DiagnosisCodec, AResultComesBackAsItWas) {
     EXPECT_FALSE((*one)->similarities[0].deviates);
     EXPECT_EQ((*one)->stages, stages);
     EXPECT_EQ((*one)->case_id, "modes/acro");
-    EXPECT_THAT((*one)->library, ElementsAre(7, 8));
+    EXPECT_THAT((*one)->library.with_set, ElementsAre(7, 8));
+    EXPECT_THAT((*one)->library.with_single, ElementsAre(Pair("expf@decay", 9u)));
   }
   const auto none = back(VectorDiagnosis());
   ASSERT_TRUE(none);

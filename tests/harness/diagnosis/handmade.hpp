@@ -75,8 +75,12 @@ class HandMade {
   }
   // With these calls, the reference has the port's outputs at `matched` ticks.
   HandMade& matches_with(std::size_t vector, LibraryCalls calls, std::size_t matched) {
-    vectors_.at(vector).library.resize(library_call_sets);
-    vectors_.at(vector).library[calls] = matched;
+    vectors_.at(vector).library.with_set.resize(library_call_sets);
+    vectors_.at(vector).library.with_set[calls] = matched;
+    return *this;
+  }
+  HandMade& matches_with(std::size_t vector, const LibraryCall& single, std::size_t matched) {
+    vectors_.at(vector).library.with_single[single] = matched;
     return *this;
   }
 

@@ -9,6 +9,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
+using testing::StartsWith;
 
 TEST(Suspects, WhereNothingFailsThereIsNoDiagnosis) {
   EXPECT_FALSE(diagnose({}));
@@ -272,6 +273,43 @@ TEST(LibraryCalls, TheyNeedToExplainHalfOfTheDeviationsByRounding) {
   HandMade third(0, 3);
   third.explained_by(0, {asinf}).matches_with(1, asinf, 4).matches_with(2, asinf, 4);
   EXPECT_FALSE(diagnose(third));
+}
+
+constexpr const char* in_tilt = "atan2f@tilt_error";
+constexpr const char* in_yaw = "atan2f@yaw_error";
+
+TEST(LibraryCalls, ASingleCallIsNamedIfItExplainsMoreThanAllCallsOfItsFunction) {
+  const auto found = diagnose(HandMade(2, 1)
+                                  .explained_by(0, {atan2f})
+                                  .matches_with(0, in_tilt, ticks)
+                                  .matches_with(1, atan2f, ticks - 1)
+                                  .matches_with(1, in_tilt, ticks)
+                                  .matches_with(1, in_yaw, 2)
+                                  .explained_by(2, {0, atan2f}));
+  ASSERT_TRUE(found);
+  ASSERT_THAT(suspected(*found), ElementsAre("libm-atan2f@tilt_error"));
+  EXPECT_EQ(found->suspects.front().explained, 2u);
+  EXPECT_THAT(found->suspects.front().ambiguity_group, IsEmpty());
+  EXPECT_THAT(std::string(found->suspects.front().fault->what),
+              StartsWith("calls atan2f of the C library where the law has `tilt_error`"));
+}
+
+TEST(LibraryCalls, AllCallsAreNamedIfASingleOneExplainsNoMore) {
+  const auto found = diagnose(HandMade(1, 1)
+                                  .explained_by(0, {atan2f})
+                                  .matches_with(0, in_tilt, ticks)
+                                  .explained_by(1, {0, atan2f}));
+  ASSERT_TRUE(found);
+  ASSERT_THAT(suspected(*found), ElementsAre("libm-atan2f"));
+  EXPECT_THAT(found->suspects.front().ambiguity_group, IsEmpty());
+}
+
+TEST(LibraryCalls, WhereASingleCallDoesNotMatterTheLawPasses) {
+  HandMade refuted(1, 1);
+  refuted.matches_with(0, atan2f, 1).matches_with(0, in_tilt, ticks).explained_by(1, {0});
+  EXPECT_THAT(suspected(*diagnose(refuted)), ElementsAre("libm-atan2f@tilt_error"));
+  refuted.matches_with(1, in_tilt, ticks - 1);
+  EXPECT_THAT(diagnose(refuted)->suspects, IsEmpty());
 }
 
 TEST(LibraryCalls, APortThatPassesIsNotDiagnosed) {
