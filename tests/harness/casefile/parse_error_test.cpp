@@ -110,7 +110,7 @@ TEST(CaseErrors, UnknownKeysHaveASuggestion) {
 
 TEST(CaseErrors, AllAreSaidAtOnce) {
   const std::string errors = errors_of("level = \"strict\"\n[unit]\njitter = 2\n");
-  EXPECT_THAT(errors, AllOf(HasSubstr("6:1: must be numeric"), HasSubstr("8:1: is a fraction")));
+  EXPECT_THAT(errors, AllOf(HasSubstr("6:1: must be exact"), HasSubstr("8:1: is a fraction")));
 }
 
 TEST(CaseErrors, Durations) {

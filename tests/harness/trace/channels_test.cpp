@@ -46,7 +46,7 @@ TEST(Channels, AreTheColumnsOfTheRecordedFilesInTheirOrder) {
   }
   names.pop_back();
   EXPECT_EQ(names, text.substr(0, text.find('\n')));
-  EXPECT_EQ(channels().size(), 212u);
+  EXPECT_EQ(channels().size(), 289u);
 }
 
 // How many bytes of the module's structs belong to a channel. No byte may belong to two.
@@ -76,6 +76,10 @@ TEST(Channels, CoverEveryByteOfTheAbiOnce) {
   // 120 + 76, less the first 16, 3 after each of torque_setpoint_achieved and `connected`, 1 at the
   // end, and 3 after each `published`.
   EXPECT_EQ(bytes_with_a_channel(Module::rate_unit), 196u - 16u - 7u - 4u * 3u);
+  // 104 + 12, less 4 after yaw_sp_move_rate and 7 after `weathervane`.
+  EXPECT_EQ(bytes_with_a_channel(Module::attitude_law), 116u - 4u - 7u);
+  // 152 + 24, less 2 after `reset` and 3 at the end of the inputs.
+  EXPECT_EQ(bytes_with_a_channel(Module::rate_law), 176u - 2u - 3u);
 }
 
 TEST(Channels, OfAModuleHaveDistinctNames) {
