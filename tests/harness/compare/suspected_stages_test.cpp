@@ -133,7 +133,7 @@ TEST(Stages, AreComparedInAllModulesThatHaveSeveral) {
                   "attitude_unit: sticks, attitude law", "rate_unit: sticks, rate law",
                   "rate_unit: sticks, integrator", "rate_unit: sticks, actuators",
                   "rate_unit: rate law, integrator", "rate_unit: rate law, actuators",
-                  "rate_unit: integrator, actuators"));
+                  "rate_unit: integrator, actuators", "rate_law: rate law, integrator"));
 }
 
 TEST(Events, AtTheSameTickTheEarlierStageIsFirst) {
