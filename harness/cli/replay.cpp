@@ -91,7 +91,8 @@ class Replay {
  private:
   Result<void> replay(const std::string& file) {
     if (auto started = start(); !started) return started;
-    const FileFormat& format = format_of(file);
+    const std::filesystem::path path = file;  // gcc 14 warns of a reference from a temporary
+    const FileFormat& format = format_of(path);
     if (!is_replayed(format)) return wrong_format(file, format, is_replayed);
     return format.read_log != nullptr ? replay_log(file) : replay_trace(file);
   }
