@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <new>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -15,17 +16,17 @@
 namespace attest::cascade {
 
 // The law of a profile: New is that of v1.14 and later, Old that of v1.5.5 and v1.3.4. Null if the
-// profile is unknown. The last arguments are the stages of both.
+// profile is unknown or no memory is left. The last arguments are the stages of both.
 template <typename New, typename Old, typename StagesOfNew, typename StagesOfOld>
 std::unique_ptr<std::variant<New, Old>> make_law(std::string_view profile,
                                                  const StagesOfNew& of_new,
                                                  const StagesOfOld& of_old) {
   using Law = std::variant<New, Old>;
   if (const auto known = profile_from_name(profile)) {
-    return std::make_unique<Law>(std::in_place_type<New>, *known, of_new);
+    return std::unique_ptr<Law>(new (std::nothrow) Law(std::in_place_type<New>, *known, of_new));
   }
   if (const auto known = mc_att_control::profile_from_name(profile)) {
-    return std::make_unique<Law>(std::in_place_type<Old>, *known, of_old);
+    return std::unique_ptr<Law>(new (std::nothrow) Law(std::in_place_type<Old>, *known, of_old));
   }
   return nullptr;
 }
