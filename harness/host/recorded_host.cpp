@@ -20,6 +20,21 @@ std::string profile_of(const std::string& vector_id) {
   return vector_id.substr(0, vector_id.find('/'));
 }
 
+// The modules that a port has which answered the vector `id`. A port of one version of the law is
+// not thereby one of the laws alone, which all versions have.
+ModuleSet modules_of(const std::string& profile, const std::string& id) {
+  const std::size_t begin = profile.size() + 1;
+  const auto alone = module_named(id.substr(begin, id.find('/', begin) - begin));
+  if (alone && info_of(*alone).is_law()) return only(*alone);
+  const ProfileInfo* const known = find_profile(profile);
+  if (!known) return only(Module::mc_att_control);
+  ModuleSet modules = known->modules;
+  for (const ModuleInfo& info : attest::modules()) {
+    if (info.is_law()) modules.reset(static_cast<std::size_t>(info.module));
+  }
+  return modules;
+}
+
 Declarations said_by(const Manifest& manifest) {
   Declarations says;
   says.name = manifest.port_name;
@@ -32,8 +47,7 @@ Declarations said_by(const Manifest& manifest) {
   for (const auto& [id, hash] : manifest.vectors) {
     const std::string profile = profile_of(id);
     if (says.profiles.empty() || says.profiles.back() != profile) says.profiles.push_back(profile);
-    const ProfileInfo* const known = find_profile(profile);
-    says.modules |= known ? known->modules : only(Module::mc_att_control);
+    says.modules |= modules_of(profile, id);
   }
   return says;
 }
