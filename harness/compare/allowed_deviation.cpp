@@ -10,20 +10,12 @@ namespace attest {
 
 void AllowedDeviation::next(const Sample& want, std::span<const ParameterChange> changes) {
   for (const ParameterChange& change : changes) gain_.set(change);
-  if (module_ == Module::attitude_law) {
-    const auto& gains = want.attitude_law.in.attitude_gains;
-    gain_.set({0, "MC_ROLL_P", gains.p[0]});
-    gain_.set({0, "MC_PITCH_P", gains.p[1]});
-    gain_.set({0, "MC_YAW_P", gains.p[2]});
-    gain_.set({0, "MC_YAW_WEIGHT", gains.yaw_weight});
-  }
   if (follows_attitude(module_)) setpoint_.next(want);
 }
 
 bool AllowedDeviation::widens(std::size_t channel, const Sample& tick) const {
   const Channel& what = channels()[channel];
   if (what.quantity != Quantity::rate || tolerances_.level() != Level::numeric) return false;
-  if (module_ == Module::attitude_law) return true;
   if (module_ == Module::attitude_unit) return what.stage == Stage::attitude_law;
   return module_ == Module::mc_att_control && uses_attitude_law(tick, module_);
 }

@@ -11,9 +11,6 @@ const float (*new_setpoint(const Sample& tick, Module module, bool is_first))[4]
     const bool is_new = (tick.in.updated & ATTEST_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;
     return is_new || is_first ? &tick.in.vehicle_attitude_setpoint.q_d : nullptr;
   }
-  if (module == Module::attitude_law) {
-    return &tick.attitude_law.in.vehicle_attitude_setpoint.q_d;
-  }
   const auto& own = tick.attitude_out.vehicle_attitude_setpoint;
   if (own.published != 0) return &own.q_d;
   const bool is_new = (tick.in.updated & ATTEST_ATTITUDE_UPDATED_VEHICLE_ATTITUDE_SETPOINT) != 0;
@@ -23,18 +20,15 @@ const float (*new_setpoint(const Sample& tick, Module module, bool is_first))[4]
 }  // namespace
 
 bool follows_attitude(Module module) {
-  return module == Module::mc_att_control || module == Module::attitude_unit ||
-         module == Module::attitude_law;
+  return module == Module::mc_att_control || module == Module::attitude_unit;
 }
 
 AttitudeQuaternion attitude_at(const Sample& tick, Module module) {
-  if (module == Module::attitude_law) return quaternion(tick.attitude_law.in.vehicle_attitude.q);
   return quaternion(module == Module::mc_att_control ? tick.in.control_state.q
                                                      : tick.attitude_in.vehicle_attitude.q);
 }
 
 bool uses_attitude_law(const Sample& tick, Module module) {
-  if (module == Module::attitude_law) return true;
   return module == Module::mc_att_control
              ? tick.in.vehicle_control_mode.flag_control_attitude_enabled != 0
              : tick.attitude_out.vehicle_rates_setpoint.published != 0;

@@ -7,7 +7,7 @@
 
 namespace attest {
 
-// Whether the module has an attitude law: the controller, the attitude unit and the law alone.
+// Whether the module is a unit that has an attitude law: the controller and the attitude unit.
 bool follows_attitude(Module module);
 
 // REQUIRES, for these two functions and for FollowedSetpoint: follows_attitude(module).
