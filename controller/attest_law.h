@@ -8,8 +8,9 @@
  * NULL, and returns the tables from its extension(). The rules of attest_unit.h for frames,
  * threads, memory and results hold here too. Compiles as C11 and as C++17.
  *
- * "v1.5" marks what only px4-v1.5.5 and px4-v1.3.4 read, "v1.14" what only later profiles read.
- * Flags are bytes: zero is false, any other value is true.
+ * A comment that begins with "v1.5" holds for px4-v1.5.5 and px4-v1.3.4 only, one with "v1.14" for
+ * the later profiles only. A law does not read what is only for other profiles. Flags are bytes:
+ * zero is false, any other value is true. ATTEST_EXTENSION_FIXED_STEP does not apply: dt is given.
  */
 #ifndef ATTEST_LAW_H
 #define ATTEST_LAW_H
@@ -29,10 +30,11 @@ typedef struct attest_attitude_law_inputs {
     float q[4]; /* body to world; in few cases of another norm than 1 */
   } vehicle_attitude;
   struct {
-    uint64_t timestamp;     /* [us] px4-v1.18 only: the first setpoint starts the reference model, a
-                             * later timestamp moves it, and any other leaves it as it is */
-    float q_d[4];           /* v1.14: of any norm; the law makes it 1 */
-    float yaw_sp_move_rate; /* [rad/s] about the world's z; v1.14: ignored if not finite */
+    uint64_t timestamp; /* [us] px4-v1.18 only. The first one above 0 starts the reference model,
+                         * a later one moves it, and any other leaves it as it is */
+    float q_d[4];       /* of any norm. v1.14: the law makes it 1 */
+    float yaw_sp_move_rate; /* [rad/s] v1.5: about body z, added after the limit. v1.14: about the
+                             * world's z, added before the limit, ignored if not finite */
   } vehicle_attitude_setpoint;
   struct {                   /* roll, pitch, yaw */
     float p[3];              /* [1/s] v1.14: p[2] before it is divided by the yaw weight */
@@ -40,9 +42,9 @@ typedef struct attest_attitude_law_inputs {
     float yaw_weight;        /* v1.14: the law limits it to 0 .. 1 */
     float yaw_ff;            /* v1.5: MC_YAW_FF */
     float weathervane_scale; /* v1.5: share of rate_max[2] that is left while weathervane is set */
-    float ref_w_n;           /* [rad/s] px4-v1.18: MC_REF_W_N, at least 0.1 */
-    float ref_ff;            /* px4-v1.18: MC_REF_FF, limited to 0 .. 1 */
-    float ref_ff_max;        /* [rad/s] px4-v1.18: MC_REF_FF_MAX; 0: no limit */
+    float ref_w_n;           /* [rad/s] px4-v1.18: MC_REF_W_N; the law raises it to 0.1 */
+    float ref_ff;            /* px4-v1.18: MC_REF_FF; the law limits it to 0 .. 1 */
+    float ref_ff_max;        /* [rad/s] px4-v1.18: MC_REF_FF_MAX; no limit if it is not above 0 */
   } attitude_gains;
   struct {
     uint8_t weathervane; /* v1.5: flag, the wind may turn the nose */
@@ -94,14 +96,14 @@ typedef struct attest_rate_law_inputs {
     uint8_t positive[3];
     uint8_t negative[3];
   } saturation;
-  struct { /* v1.5: flags of the mixer */
+  struct { /* v1.5: flags of the mixer; px4-v1.3.4 does not read yaw */
     uint8_t lower_limit, upper_limit, yaw;
   } multirotor_motor_limits;
 } attest_rate_law_inputs;
 
 typedef struct attest_rate_law_outputs {
   struct {
-    float xyz[3]; /* not limited */
+    float xyz[3]; /* not limited, and before the yaw filter of the unit since v1.16 */
   } vehicle_torque_setpoint;
   struct {
     float rollspeed_integ, pitchspeed_integ, yawspeed_integ; /* after this call */
