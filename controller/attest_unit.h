@@ -213,14 +213,17 @@ typedef struct attest_unit {
   /* Frees an instance. Called once per successful create(), as the last call for the instance. */
   void (*destroy)(void* self);
 
-  /* Sets one parameter by its PX4 name. Returns ATTEST_OK, or ATTEST_INVALID for an unknown name or
-   * a value that is not allowed. Integer parameters arrive as the float of the same value. Legal
-   * before the first step, and before a step that has ATTEST_UPDATED_PARAMETER_UPDATE set. A value
-   * set before the first step holds from creation: it also controls decisions that the law makes
-   * once, such as tailsitter recovery. A later value takes effect in the step that follows.
-   * Parameters never set have the law's default: `attest list --parameters` prints all defaults. In
-   * px4-v1.3.4 MC_TPA_BREAK, MC_TPA_SLOPE and MC_BAT_SCALE_EN do not exist: the host does not set
-   * them there, and a port may return ATTEST_INVALID. Same thread as step(). */
+  /* Sets one parameter by its PX4 name. Returns ATTEST_OK. ATTEST_UNSUPPORTED is right for a
+   * parameter that is a constant in the port: the cases that set it are then unsupported, and the
+   * others are judged. ATTEST_INVALID is right for a name that the profile does not have and for a
+   * value that is not allowed: a case that sets it fails. Integer parameters arrive as the float of
+   * the same value. Legal before the first step, and before a step that has
+   * ATTEST_UPDATED_PARAMETER_UPDATE set. A value set before the first step holds from creation: it
+   * also controls decisions that the law makes once, such as tailsitter recovery. A later value
+   * takes effect in the step that follows. Parameters never set have the law's default: `attest
+   * list --parameters` prints all defaults. In px4-v1.3.4 MC_TPA_BREAK, MC_TPA_SLOPE and
+   * MC_BAT_SCALE_EN do not exist: the host does not set them there, and a port may return
+   * ATTEST_INVALID. Same thread as step(). */
   int (*set_parameter)(void* self, const char* name, float value);
 
   /* One control step. Returns ATTEST_OK or another of the results above. Must work for every input,

@@ -119,6 +119,15 @@ TASKS
   has "no vector was compared"
 }
 
+@test "a parameter that is a constant in the port: only the cases that set it are not judged" {
+  run "$ATTEST" run --port "lib:$PORTS/port_constant_parameter.so" --profile px4-v1.5.5 \
+    --group yaw_feed_forward,rate_limit --rate 250
+  [ "$status" -eq 0 ]
+  has "set_parameter(MC_YAW_FF) at tick 0 returned ATTEST_UNSUPPORTED"
+  has "3 unsupported"
+  lacks "fail:"
+}
+
 @test "a profile that the port refuses is skipped, and nothing compared is not success" {
   judged refuses_profile
   [ "$status" -eq 2 ]
