@@ -213,7 +213,9 @@ nothing_half_done() {
   "$ATTEST" --suite suite bless --yes --reason "first" >/dev/null &
   first=$!
   being_written
+  kill -STOP $first # so that it cannot end before the second one begins
   run "$ATTEST" --suite suite bless --yes --reason "second"
+  kill -CONT $first
   [ "$status" -eq 2 ]
   has "suite/golden/.bless.lock: another \`attest bless\` holds this lock"
   wait $first

@@ -63,6 +63,11 @@ PLOTS
     kill -$signal $!
     wait $! || [ "$?" -gt 128 ]
     nothing_is_left
+    # After a kill another process removes it.
+    for _ in $(seq 50); do
+      [ -n "$(ls temporary)" ] || break
+      sleep 0.1
+    done
     [ -z "$(ls temporary)" ]
     [ ! -e page.html ]
   done
