@@ -65,7 +65,7 @@ is_no_conformance() {
   has '`says.fixed_step` is wrong: `-250` is not a rate'
   judged modules
   [ "$status" -eq 2 ]
-  has '`says.modules` is 255; it must be at most 31'
+  has '`says.modules` is 255; it must be at most 127'
 }
 
 @test "what a port declared before the run holds for the whole run" {

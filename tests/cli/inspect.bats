@@ -44,7 +44,7 @@ load common
   [ "$status" -eq 0 ]
   has "agrees with 81 of 81 traces recorded from the firmware"
   lacks "BAD"
-  has "px4-v1.3.4/flight, px4-v1.3.4/flight_timing, px4-v1.3.4/instances, px4-v1.5.5/flight"
+  has "px4-v1.3.4/flight, px4-v1.3.4/flight_timing, px4-v1.3.4/instances, px4-v1.3.4/rate_law"
   lacks "px4-v1.3.4/tpa"
   lacks "px4-v1.5.5/battery_status"
 }

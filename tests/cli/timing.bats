@@ -177,7 +177,7 @@ CHECK
 @test "flights are not timed" {
   run "$ATTEST" time --group flight
   [ "$status" -eq 2 ]
-  has "no open-loop case of a unit is selected"
+  has "no open-loop case of a unit or law is selected"
 }
 
 @test "the stack that a step uses is measured" {
