@@ -54,8 +54,8 @@ std::string parameters_of(const RunResult& run) {
 
 // The port's declarations, except its name.
 std::string declarations_of(const RunResult& run) {
-  return fmt::format("{} fraction bits, fixed step {}, {} outputs not recorded: {}",
-                     run.fraction_bits.value_or(0),
+  return fmt::format("modules {}, {} fraction bits, fixed step {}, {} outputs not recorded: {}",
+                     fmt::join(names_of(run.port_modules), " "), run.fraction_bits.value_or(0),
                      run.fixed_step ? run.fixed_step->to_string() : "none",
                      names_of(run.not_recorded).size(), run.not_recorded.to_string());
 }

@@ -40,6 +40,7 @@ Result<void> ask_port(const std::vector<std::string>& profiles, RunPlan& plan) {
   }
   plan.run.port_name = port->name;
   plan.run.port_version = port->version;
+  plan.run.port_modules = port->modules;
   plan.run.fraction_bits = port->fraction_bits;
   plan.run.fixed_step = port->fixed_step;
   plan.run.not_recorded = port->not_recorded;

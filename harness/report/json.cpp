@@ -106,6 +106,7 @@ ordered_json claims(const RunResult& run) {
                    {"conformant", claim.conforms()},
                    {"groups", claim.whole},
                    {"modules", claim.modules},
+                   {"of_modules", claim.is_of_modules},
                    {"failing", claim.failing},
                    {"missing", claim.missing}});
   }
@@ -127,6 +128,7 @@ ordered_json port(const RunResult& run) {
       {"specification", run.port}, {"name", run.port_name}, {"version", run.port_version}};
   if (!run.port_sha256.empty()) out["sha256"] = run.port_sha256;
   if (!run.port_files.empty()) out["files"] = run.port_files;
+  out["modules"] = names_of(run.port_modules);
   if (run.fraction_bits) out["fraction_bits"] = *run.fraction_bits;
   if (run.fixed_step) out["fixed_step"] = run.fixed_step->to_string();
   if (run.not_recorded.any()) {

@@ -44,6 +44,11 @@ void read_port(JsonReader reader, RunResult& run) {
   run.port = reader.text("specification");
   run.port_name = reader.text("name");
   run.port_version = reader.text("version");
+  for (const std::string& name : reader.texts("modules")) {
+    const auto module = module_named(name);
+    if (module) run.port_modules |= only(*module);
+    if (!module) reader.wrong(fmt::format("there is no module `{}`", name));
+  }
   if (reader.has("sha256")) run.port_sha256 = reader.text("sha256");
   if (reader.has("files")) run.port_files = reader.texts("files");
   if (reader.has("fraction_bits")) {

@@ -68,7 +68,7 @@ std::string claimed(const Claim& claim) {
 }
 
 std::string text_of(const Claim& claim, const RunResult& run) {
-  const std::string profile = claimed(claim);
+  const std::string profile = claim.failing.empty() ? claimed(claim) : profile_text(claim.profile);
   if (claim.failing.size() == 1) {
     return fmt::format("none: {}, a group fails ({})", profile, names_of(claim.failing));
   }

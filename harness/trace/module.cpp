@@ -55,4 +55,12 @@ std::optional<Module> module_named(std::string_view name) {
   return found == module_table.end() ? std::nullopt : std::optional(found->module);
 }
 
+std::vector<std::string_view> names_of(const ModuleSet& modules) {
+  std::vector<std::string_view> names;
+  for (const ModuleInfo& info : module_table) {
+    if (contains(modules, info.module)) names.push_back(info.name);
+  }
+  return names;
+}
+
 }  // namespace attest

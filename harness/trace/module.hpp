@@ -161,5 +161,6 @@ std::span<const ModuleInfo> modules();
 const ModuleInfo& info_of(Module module);
 std::string_view name_of(Module module);
 std::optional<Module> module_named(std::string_view name);
+std::vector<std::string_view> names_of(const ModuleSet& modules);
 
 }  // namespace attest

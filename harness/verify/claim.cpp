@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/port/profiles.hpp"
+
 namespace attest {
 namespace {
 
@@ -182,24 +184,27 @@ std::string without_files(std::string_view ports) {
   }
 }
 
-bool has_modules_only(const Groups& groups) {
-  return std::none_of(groups.begin(), groups.end(), [](const auto& group) {
-    return !is_module(group.first) && group.second.was_compared();
-  });
+// Whether the port has no unit of the profile, so that its optional modules are all that it is.
+bool has_modules_only(const std::string& profile, const RunResult& run) {
+  const ProfileInfo* const known = find_profile(profile);
+  return known && std::ranges::none_of(modules(), [&](const ModuleInfo& info) {
+           return info.is_unit() && contains(known->modules & run.port_modules, info.module);
+         });
 }
 
 // Adds the optional modules of which some vectors were not run or are not good, although none
 // failed.
 void say_which_modules_are_in_part(const Groups& groups, std::vector<std::string>& missing) {
   for (const auto& [name, group] : groups) {
-    const bool is_whole = std::ranges::all_of(
+    const bool has_all = std::ranges::all_of(
         group.rates, [](const auto& rate) { return rate.second.good >= rate.second.in_suite; });
-    if (!is_module(name) || !group.was_compared() || group.fails || is_whole) continue;
+    if (!is_module(name) || !group.was_compared() || group.fails || has_all) continue;
     missing.push_back("only a part of " + name);
   }
 }
 
-std::vector<std::string> missing_of(const Groups& groups, const RunResult& run) {
+std::vector<std::string> missing_of(const Groups& groups, const RunResult& run,
+                                    bool is_of_modules) {
   std::vector<std::string> missing;
   if (!run.suite_is_released) {
     missing.push_back(run.suite_reference.empty()
@@ -215,7 +220,7 @@ std::vector<std::string> missing_of(const Groups& groups, const RunResult& run) 
   if (run.fixed_step) {
     missing.push_back(fmt::format("fixed step of {} Hz", run.fixed_step->to_string()));
   }
-  if (has_modules_only(groups)) {
+  if (is_of_modules) {
     say_which_modules_are_in_part(groups, missing);
     return missing;
   }
@@ -232,7 +237,7 @@ Claim claim_of(const std::string& profile, const Groups& groups, const RunResult
   claim.profile = profile;
   claim.level = run.level;
   claim.has_all_groups = true;
-  claim.is_of_modules = has_modules_only(groups);
+  claim.is_of_modules = has_modules_only(profile, run);
   for (const auto& [name, group] : groups) {
     const bool whole = is_whole(group, run);
     if (group.fails) claim.failing.push_back(name);
@@ -244,7 +249,7 @@ Claim claim_of(const std::string& profile, const Groups& groups, const RunResult
       claim.modules.push_back(name);
     }
   }
-  claim.missing = missing_of(groups, run);
+  claim.missing = missing_of(groups, run, claim.is_of_modules);
   const bool is_empty = claim.whole.empty() && claim.modules.empty();
   if (is_empty && claim.missing.empty()) claim.missing.emplace_back("no vector passed");
   return claim;

@@ -2,9 +2,9 @@
 // implement one version of the law only.
 //
 // A port conforms to a profile if no case failed, and all cases of the released suite passed: every
-// rate and every group, except the optional modules (mixer, battery estimate, pure laws). If only
-// optional modules were judged, the claim is about them: a port may be a law without its unit.
-// Cases that are compared at the exact level only may be skipped at another level
+// rate and every group, except the optional modules (mixer, battery estimate, pure laws). If the
+// port declares no unit of the profile, the claim is about its optional modules: a law alone. Cases
+// that are compared at the exact level only may be skipped at another level
 // (VectorResult::exact_only), but of each group at least one vector must be compared. A port with a
 // fixed step, changed parameters, outputs that were not recorded, or no process of its own does not
 // conform. A claim names the groups that fail, and what is missing.
@@ -31,7 +31,7 @@ struct Claim {
   // failed is in `failing`.
   std::vector<std::string> modules;
   bool has_all_groups = false;  // all groups except optional modules are in `whole`
-  bool is_of_modules = false;   // no group but those of optional modules was compared
+  bool is_of_modules = false;   // the port has no unit of the profile
   std::vector<std::string>
       missing;  // reasons against conformance: "custom suite", "2 vectors unsupported (tpa)"
 

@@ -31,6 +31,7 @@ struct RunResult {
   std::string port;             // as given: "lib:./libmine.so"
   std::string port_name;        // declared by the port
   std::string port_version;
+  ModuleSet port_modules;                   // declared by the port
   std::optional<int> fraction_bits;         // of a port in fixed point
   std::optional<Rate> fixed_step;           // of a port with a fixed sample time
   std::vector<ParameterChange> parameters;  // of --param; they replace the cases' own

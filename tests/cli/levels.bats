@@ -51,8 +51,8 @@ open_loop=(--group anti_windup --group modes --group arming --group attitude --g
 @test "a run at the level events does not say that a port conforms" {
   run "$ATTEST" run --level events --group mixer --json report.json --badge badge.svg
   [ "$status" -eq 0 ]
-  has "events agree: mixer of px4-v1.5.5, events"
-  grep -q '"standing": "events agree"' report.json
+  has "partial: px4-v1.5.5, events"
+  grep -q '"standing": "partial"' report.json
 }
 
 @test "the faults that a level catches are counted" {
