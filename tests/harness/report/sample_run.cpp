@@ -145,6 +145,7 @@ RunResult sample_run() {
   run.port = "lib:./it's mine.so";
   run.port_name = "acme <fc> & \x1b[31mco";
   run.port_version = "1.2-\"rc\"";
+  run.port_modules = only(Module::mc_att_control);
   run.level = Level::numeric;
   run.rates = {Rate::hz(100), Rate::hz(250), Rate::hz(1000, 3), Rate::hz(3000)};
   for (const char* group : {"attitude", "flight", "mixed", "robustness", "tpa"}) {
@@ -178,6 +179,7 @@ RunResult passing_run() {
   run.port = "builtin";
   run.port_name = "reference";
   run.port_version = "0.1.0";
+  run.port_modules = only(Module::mc_att_control);
   run.level = Level::exact;
   run.rates = {Rate::hz(50), Rate::hz(250)};
   for (const char* name : {"pitch_5", "roll_30", "yaw_step"}) {
