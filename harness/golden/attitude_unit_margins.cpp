@@ -169,17 +169,11 @@ using AttitudeLawMeter =
 }  // namespace
 
 std::unique_ptr<MarginMeter> attitude_unit_meter(const std::string& profile) {
-  const auto known = cascade::profile_from_name(profile);
-  if (!known) return nullptr;
-  return std::make_unique<AttitudeUnitMeter>(
-      *known, [](const Sample& sample) { return &sample.attitude_in; });
+  return meter_of<AttitudeUnitMeter>(cascade::profile_from_name(profile), Module::attitude_unit);
 }
 
 std::unique_ptr<MarginMeter> attitude_law_meter(const std::string& profile) {
-  const auto known = cascade::profile_from_name(profile);
-  if (!known) return nullptr;
-  return std::make_unique<AttitudeLawMeter>(
-      *known, [](const Sample& sample) { return &sample.attitude_law.in; });
+  return meter_of<AttitudeLawMeter>(cascade::profile_from_name(profile), Module::attitude_law);
 }
 
 }  // namespace attest

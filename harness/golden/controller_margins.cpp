@@ -139,8 +139,7 @@ using LawMeter = UnitMeter<mc_att_control::McAttControl<double, NotingController
 
 class ControllerMeter final : public LawMeter {
  public:
-  explicit ControllerMeter(mc_att_control::Profile profile)
-      : LawMeter(profile, [](const Sample& sample) { return &sample.in; }) {}
+  using LawMeter::LawMeter;
 
  private:
   void measure(std::span<const ParameterChange> changes, const Sample& sample) override {
@@ -162,8 +161,7 @@ using OldRateLawMeter =
 
 class OldAttitudeLawMeter final : public PureAttitudeMeter {
  public:
-  explicit OldAttitudeLawMeter(mc_att_control::Profile profile)
-      : PureAttitudeMeter(profile, [](const Sample& sample) { return &sample.attitude_law.in; }) {}
+  using PureAttitudeMeter::PureAttitudeMeter;
 
  private:
   void measure(std::span<const ParameterChange> changes, const Sample& sample) override {
@@ -176,20 +174,17 @@ class OldAttitudeLawMeter final : public PureAttitudeMeter {
 }  // namespace
 
 std::unique_ptr<MarginMeter> controller_meter(const std::string& profile) {
-  const auto known = mc_att_control::profile_from_name(profile);
-  return known ? std::make_unique<ControllerMeter>(*known) : nullptr;
+  return meter_of<ControllerMeter>(mc_att_control::profile_from_name(profile),
+                                   Module::mc_att_control);
 }
 
 std::unique_ptr<MarginMeter> old_attitude_law_meter(const std::string& profile) {
-  const auto known = mc_att_control::profile_from_name(profile);
-  return known ? std::make_unique<OldAttitudeLawMeter>(*known) : nullptr;
+  return meter_of<OldAttitudeLawMeter>(mc_att_control::profile_from_name(profile),
+                                       Module::attitude_law);
 }
 
 std::unique_ptr<MarginMeter> old_rate_law_meter(const std::string& profile) {
-  const auto known = mc_att_control::profile_from_name(profile);
-  if (!known) return nullptr;
-  return std::make_unique<OldRateLawMeter>(
-      *known, [](const Sample& sample) { return &sample.rate_law.in; });
+  return meter_of<OldRateLawMeter>(mc_att_control::profile_from_name(profile), Module::rate_law);
 }
 
 }  // namespace attest

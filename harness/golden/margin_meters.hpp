@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -25,23 +26,28 @@ std::unique_ptr<MarginMeter> old_rate_law_meter(const std::string& profile);
 template <typename Unit, typename NotingLaw, typename In, typename Out>
 class UnitMeter : public MarginMeter {
  public:
-  // `in`: where a sample has the unit's inputs.
   template <typename Profile>
-  UnitMeter(Profile profile, const In* (*in)(const Sample&))
-      : in_(in), unit_(profile, NotingLaw(&notes_)) {}
+  UnitMeter(Profile profile, Module module)
+      : in_(info_of(module).in), unit_(profile, NotingLaw(&notes_)) {}
 
  protected:
   void measure(std::span<const ParameterChange> changes, const Sample& sample) override {
     if constexpr (requires { unit_.set_parameter("", 0.0f); }) {
       for (const ParameterChange& change : changes) unit_.set_parameter(change.name, change.value);
     }
-    unit_.step(*in_(sample), out_);
+    unit_.step(*static_cast<const In*>(in_.in(sample)), out_);
   }
 
  private:
-  const In* (*in_)(const Sample&);
+  Block in_;  // the inputs in a sample
   Unit unit_;
   Out out_{};
 };
+
+// Null without a profile.
+template <typename Meter, typename Profile>
+std::unique_ptr<MarginMeter> meter_of(std::optional<Profile> profile, Module module) {
+  return profile ? std::make_unique<Meter>(*profile, module) : nullptr;
+}
 
 }  // namespace attest

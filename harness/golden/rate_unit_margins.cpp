@@ -78,17 +78,11 @@ using RateLawMeter = UnitMeter<cascade::PureRateLaw<double, NotingRateUnit>, Not
 }  // namespace
 
 std::unique_ptr<MarginMeter> rate_unit_meter(const std::string& profile) {
-  const auto known = cascade::profile_from_name(profile);
-  if (!known) return nullptr;
-  return std::make_unique<RateUnitMeter>(*known,
-                                         [](const Sample& sample) { return &sample.rate_in; });
+  return meter_of<RateUnitMeter>(cascade::profile_from_name(profile), Module::rate_unit);
 }
 
 std::unique_ptr<MarginMeter> rate_law_meter(const std::string& profile) {
-  const auto known = cascade::profile_from_name(profile);
-  if (!known) return nullptr;
-  return std::make_unique<RateLawMeter>(*known,
-                                        [](const Sample& sample) { return &sample.rate_law.in; });
+  return meter_of<RateLawMeter>(cascade::profile_from_name(profile), Module::rate_law);
 }
 
 }  // namespace attest
