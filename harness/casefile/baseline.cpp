@@ -79,7 +79,7 @@ constexpr Row rows[] = {
 };
 
 Of kind_of(const ModuleInfo& info) {
-  if (info.profiles == Profiles::all) return Of::laws;
+  if (info.is_law()) return Of::laws;
   return info.is_of_cascade() ? Of::cascade : Of::controller;
 }
 

@@ -28,8 +28,6 @@ struct TimeCommandOptions {
   std::string html, json;
 };
 
-bool is_timed(const ModuleInfo& info) { return info.is_unit() || info.is_law(); }
-
 // The open-loop cases of units and laws. Flights are left out: their steps cannot be repeated
 // without a new flight, and do not differ in kind from those in open loop.
 Result<std::vector<SelectedCase>> open_loop_cases(const TimeCommandOptions& options,
@@ -37,7 +35,7 @@ Result<std::vector<SelectedCase>> open_loop_cases(const TimeCommandOptions& opti
   auto cases = options.select.cases_in(suite.case_folders());
   if (!cases) return cases;
   std::erase_if(*cases, [](const SelectedCase& one) {
-    return one.the_case.flight || !is_timed(info_of(one.the_case.module));
+    return one.the_case.flight || !info_of(one.the_case.module).has_law();
   });
   if (cases->empty())
     return fail("no open-loop case of a unit or law is selected, and only these can be timed");

@@ -172,7 +172,7 @@ bool smoke(const HostOptions& options, const std::string& profile,
   if (known) own = known->modules & (*host)->declarations().modules;
   bool is_good = true;
   for (const ModuleInfo& info : modules()) {
-    if (!contains(own, info.module) || !(info.is_unit() || info.is_law())) continue;
+    if (!contains(own, info.module) || !info.has_law()) continue;
     is_good = Smoke(options, profile, info.module, report).all() && is_good;
   }
   return is_good;

@@ -118,13 +118,13 @@ std::vector<std::string> profiles_of_law(std::string_view profile) {
   return names;
 }
 
-bool makes_any_of(Port& port, const std::string& profile) {
+bool makes_any_of(Port& port, const std::string& profile, std::optional<Module> but) {
   const ProfileInfo* const known = find_profile(profile);
   const ModuleSet own = (known ? known->modules : only(Module::mc_att_control)) & port.modules();
   const auto all = modules();
   return std::any_of(all.begin(), all.end(), [&](const ModuleInfo& info) {
-    const bool is_asked = contains(own, info.module) && (info.is_unit() || info.is_law());
-    return is_asked && port.create_unit(info.module, profile, "") != nullptr;
+    const bool is_asked = contains(own, info.module) && info.has_law();
+    return is_asked && info.module != but && port.create_unit(info.module, profile, "") != nullptr;
   });
 }
 

@@ -30,9 +30,9 @@ const ProfileInfo* find_profile(std::string_view name);
 // name.
 std::vector<std::string> profiles_of_law(std::string_view profile);
 
-// True if the port makes a unit or a pure law of that profile. If attest does not know the profile,
-// only a controller is tried.
-bool makes_any_of(Port& port, const std::string& profile);
+// True if the port makes a unit or a pure law of that profile, other than the module `but`. If
+// attest does not know the profile, only a controller is tried.
+bool makes_any_of(Port& port, const std::string& profile, std::optional<Module> but = {});
 
 // A parameter of a module.
 struct Parameter {

@@ -35,7 +35,7 @@ class SecondsOf {
 
 std::string unit_of_signal(const std::string& name) {
   for (const ModuleInfo& info : modules()) {
-    if (!info.is_unit() && !info.is_law()) continue;
+    if (!info.has_law()) continue;
     for (const char* prefix : {"out/", "in/"}) {
       if (const auto channel = find_channel(info.module, prefix + name)) {
         return std::string(unit_of(channels()[*channel].quantity));

@@ -146,6 +146,7 @@ struct ModuleInfo {
   // A port needs all units of a profile to conform to it. Other modules are optional.
   bool is_unit() const { return !step_topic.empty(); }
   bool is_law() const { return profiles == Profiles::all; }  // of attest_law.h
+  bool has_law() const { return is_unit() || is_law(); }     // not mixer and battery estimate
   bool is_of_cascade() const { return profiles == Profiles::with_cascade; }
   // REQUIRES: a unit.
   std::uint64_t sampled_us(const Sample& sample) const {
