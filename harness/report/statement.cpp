@@ -36,13 +36,13 @@ std::string which_groups(const Claim& claim) {
   return out;
 }
 
-// Fixed point has wider tolerances at the numeric level. At the level events, flights are compared
-// at this level, too.
+// Fixed point has wider tolerances at the numeric level. At the level events, flights and modules
+// without events are compared at this level, too.
 std::string arithmetic_of(const RunResult& run) {
-  const bool flew = std::any_of(
-      run.results.begin(), run.results.end(),
-      [](const VectorResult& result) { return result.plant_configuration.has_value(); });
-  const bool is_numeric = run.level == Level::numeric || (run.level == Level::events && flew);
+  const bool is_numeric = run.level == Level::numeric ||
+                          std::ranges::any_of(run.results, [](const VectorResult& result) {
+                            return result.compared == Level::numeric;
+                          });
   if (!run.fraction_bits || !is_numeric) return "";
   return fmt::format(" for fixed point with {} fraction bits", *run.fraction_bits);
 }

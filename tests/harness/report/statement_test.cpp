@@ -62,6 +62,11 @@ TEST(Statement, SaysWhatWasAllowedToFixedPoint) {
               HasSubstr("px4-v1.5.5, numeric for fixed point with 22 fraction bits, 2 rates"));
   run.level = Level::exact;
   EXPECT_THAT(conformance_statement(run), HasSubstr("px4-v1.5.5, exact, 2 rates"));
+  run.level = Level::events;
+  EXPECT_THAT(conformance_statement(run), HasSubstr("px4-v1.5.5, events, 2 rates"));
+  run.results.front().compared = Level::numeric;  // a flight, or a module without events
+  EXPECT_THAT(conformance_statement(run),
+              HasSubstr("px4-v1.5.5, events for fixed point with 22 fraction bits, 2 rates"));
 }
 
 TEST(Statement, SaysTheFixedStepOfAPort) {
