@@ -79,3 +79,12 @@ in_python="$SOURCE/controller/starters/python_law"
   [ "$status" -eq 1 ]
   has "look first at the integrator"
 }
+
+@test "a port that has units is judged as a whole, also if only a law is selected" {
+  run "$ATTEST" run --group rate_law --profile px4-v1.16.0 --port fault:cascade-spool-up-missing \
+    --json r.json
+  [ "$status" -eq 0 ]
+  has "partial: px4-v1.16.0"
+  has "because: only --group rate_law"
+  grep -q '"standing": "partial"' r.json
+}
