@@ -72,6 +72,9 @@ const void* extension_in_chosen(const char* id) noexcept {
   if (std::strcmp(id, ATTEST_EXTENSION_ATTITUDE_UNIT) == 0) {
     return &cascade::AttitudeUnitTable<ChosenFloat>::table;
   }
+  if (std::strcmp(id, ATTEST_EXTENSION_ATTITUDE_LAW) == 0) {
+    return &cascade::AttitudeLawTable<ChosenFloat>::table;
+  }
   return cascade::whole_reference()->extension(id);
 }
 

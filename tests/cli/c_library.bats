@@ -95,3 +95,12 @@ conforms() {
     [ $((explained < failing)) -eq "$([ "$style" = simulink ] && echo 1 || echo 0)" ]
   done
 }
+
+@test "a law alone that calls the C library is told so, too" {
+  caller c_law "sin cos asin acos"
+  run "$ATTEST" run --profile px4-v1.16.0 --group attitude_law --level exact --port lib:./c_law.so
+  conforms && return
+  [ "$status" -eq 1 ]
+  has "libm-"
+  has "link attest::math"
+}
