@@ -15,8 +15,7 @@
 namespace attest::test {
 namespace {
 
-// ---- control allocator
-// ---------------------------------------------------------------------------
+// ---- control allocator -------------------------------------------------------------------------
 
 // How far the speeds and flags of many saturated setpoints are from those of the second program.
 class Distance {
@@ -98,8 +97,7 @@ void allocator(std::vector<LoopTruth>& table, const std::string& name, int setpo
   add("share with other flags, MC_AIRMODE 1 and 2", std::nullopt, in_airmode.other_flags());
 }
 
-// ---- gyro
-// ----------------------------------------------------------------------------------------
+// ---- gyro --------------------------------------------------------------------------------------
 
 // The simpler model does not filter the rates, and its filter of the derivative is of second order.
 void gyro(std::vector<LoopTruth>& table, std::int64_t sampling_hz) {
@@ -128,8 +126,7 @@ void gyro(std::vector<LoopTruth>& table, std::int64_t sampling_hz) {
   }
 }
 
-// ---- land detector
-// -------------------------------------------------------------------------------
+// ---- land detector -----------------------------------------------------------------------------
 
 constexpr double sample_s = 0.02;
 
