@@ -96,7 +96,7 @@ conforms() {
   done
 }
 
-@test "a law alone that calls the C library is told so, too" {
+@test "in a law alone the functions are named, too" {
   caller c_law "sin cos asin acos"
   run "$ATTEST" run --profile px4-v1.16.0 --group attitude_law --level exact --port lib:./c_law.so
   conforms && return
