@@ -37,6 +37,9 @@
  * most once a second. The host passes it in the next step, and the port must read the parameters in
  * that step. In the vehicle a port may do either: a change then takes effect at another time.
  *
+ * Bits: an output has the bits of the firmware only if the compiler does not fuse multiplications
+ * and additions (-ffp-contract=off).
+ *
  * Profiles: the comment of a field says which profiles read it, if not all do.
  */
 #ifndef ATTEST_CASCADE_H
@@ -162,6 +165,9 @@ typedef struct attest_attitude_unit {
 
 /* ---- the rate unit ---------------------------------------------------------------------------*/
 
+/* The rate unit copies manual_control_setpoint in acro mode only, and battery_status only while
+ * MC_BAT_SCALE_EN is not 0. Until then the last sample stays new, as attest_unit.h says of
+ * `updated`. */
 #define ATTEST_EXTENSION_RATE_UNIT "attest.rate_unit.v1" /* const attest_rate_unit* */
 
 enum {

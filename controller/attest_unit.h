@@ -164,8 +164,9 @@ typedef struct attest_inputs {
  *
  * Own publications: the unit has one copy of vehicle_rates_setpoint. Its own result overwrites an
  * external sample in that copy. If the unit publishes on vehicle_rates_setpoint, an external sample
- * that it has not copied yet is lost, too. A VTOL publishes on the virtual topic, so its external
- * sample waits until offboard rates mode copies it.
+ * that it has not copied yet is lost, too. Before its first vehicle_status, when it publishes
+ * nothing, its result overwrites the copy only. A VTOL publishes on the virtual topic, so its
+ * external sample waits until offboard rates mode copies it.
  */
 typedef struct attest_outputs {
   struct {        /* topic vehicle_rates_setpoint: of the attitude loop, or of the sticks in acro */
@@ -239,6 +240,13 @@ typedef struct attest_unit {
 /* Extension: const char*, the groups of cases that the port does not support, separated by commas:
  * "tailsitter,robustness". Their cases are counted separately, never as conformant. */
 #define ATTEST_EXTENSION_UNSUPPORTED_GROUPS "attest.unsupported_groups"
+
+/* Extension: const char*, what the port has not, separated by commas: "sticks,mc_att_ctrl_status,
+ * MC_YAW_FF=0.5". A word is a feature (`attest list --features`), an output or a topic of outputs
+ * in which `*` stands for any text (`attest list --channels`), or a parameter that is a constant,
+ * with its value. What is declared is not judged, and the rest is. A constant is never set: cases
+ * that do not set it either run with its value. The statement lists all words. */
+#define ATTEST_EXTENSION_LACKS "attest.lacks"
 
 /* Extension: const char*, the arithmetic of a port in fixed point: "fixed:22" when its signals have
  * 22 fraction bits; 20 to 32 are allowed. The numeric level then allows, in addition to the

@@ -15,6 +15,7 @@
 #include "harness/report/conclusion.hpp"
 #include "harness/report/github.hpp"
 #include "harness/report/terminal.hpp"
+#include "harness/verify/silent_topics.hpp"
 
 namespace attest::cli {
 namespace {
@@ -32,10 +33,12 @@ std::optional<Diagnosis> diagnosed(const RunResult& run, const Examined& examine
   options.processes = examined.jobs;
   options.in_process = examined.host.in_process;
   options.stop = interrupted;
+  HostOptions host = examined.host;
+  // That a topic is never published is said already, and must not look like a mistake in the law.
+  if (host.said) host.said->lacks.outputs |= silent_outputs(run.results);
   const auto vectors = [&](const faults::Fault* partner) {
     std::vector<VectorSimilarity> similarities;
-    const auto jobs =
-        diagnosis_jobs(examined.cases, run.results, examined.host, partner, run.level);
+    const auto jobs = diagnosis_jobs(examined.cases, run.results, host, partner, run.level);
     auto outcome = run_jobs(jobs, options);
     if (!outcome.errors.empty() && !interrupted()) {
       fmt::print(stderr, "attest: diagnosis: {}\n", outcome.errors.front().to_string());

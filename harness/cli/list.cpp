@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -12,10 +13,12 @@
 #include <fmt/ranges.h>
 
 #include "harness/casefile/flight_mode.hpp"
+#include "harness/casefile/stimulus.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/suggestion.hpp"
 #include "harness/plant/vehicle.hpp"
+#include "harness/port/features.hpp"
 #include "harness/port/profiles.hpp"
 #include "harness/trace/channels.hpp"
 
@@ -24,7 +27,8 @@ namespace {
 
 struct ListOptions {
   SelectionOptions select;
-  bool groups = false, parameters = false, channels = false, modes = false, vehicles = false;
+  bool groups = false, parameters = false, channels = false, modes = false, vehicles = false,
+       features = false;
 };
 
 // The requested profiles; by default all.
@@ -171,6 +175,22 @@ void list_groups(const std::vector<SelectedCase>& cases) {
   }
 }
 
+// The features with the number of open-loop cases that use each, at their first rate. What a flight
+// uses is known only when it is flown.
+void list_features(const std::vector<SelectedCase>& cases) {
+  std::array<std::size_t, feature_count> users{};
+  for (const auto& [the_case, configurations] : cases) {
+    if (the_case.flight) continue;
+    const Trace inputs = stimulate(the_case, configurations.front().rate.motor_unit);
+    const FeatureSet used = features_of(inputs, the_case.profile);
+    for (std::size_t i = 0; i < feature_count; ++i) users[i] += used[i] ? 1 : 0;
+  }
+  fmt::print("{:<18}{:>6}  {}\n", "feature", "cases", "a case or flight uses it if");
+  for (std::size_t i = 0; i < feature_count; ++i) {
+    fmt::print("{:<18}{:>6}  {}\n", features()[i].name, users[i], features()[i].what);
+  }
+}
+
 // The numbers that distinguish the vehicles. models/<vehicle>.toml has all numbers.
 Result<void> list_vehicles(const std::filesystem::path& models) {
   fmt::print("{:<14}{:>8}{:>8}{:>7}{:>7}{:>10}  {}\n", "vehicle", "mass kg", "rotors", "arm m",
@@ -209,7 +229,11 @@ int list_command(const ListOptions& options, const Globals& globals) {
   }
   const auto cases = options.select.cases_in(suite->case_folders());
   if (!cases) return report_error(cases.error());
-  options.groups ? list_groups(*cases) : list_cases(*cases);
+  if (options.features) {
+    list_features(*cases);
+  } else {
+    options.groups ? list_groups(*cases) : list_cases(*cases);
+  }
   note_as_of(*cases);
   return exit_ok;
 }
@@ -225,6 +249,9 @@ void add_list(const CommandLine& line) {
   command.flag("--parameters", options->parameters, "List the parameters of the law");
   command.flag("--channels", options->channels,
                "List the signals (columns of traces) with type, unit and module");
+  command.flag("--features", options->features,
+               "List the features of the law that a port can declare to lack, and how many of the "
+               "selected open-loop cases use each");
   command.flag("--flight-modes", options->modes,
                "List the flight modes and the flags that they set");
   command.flag("--vehicles", options->vehicles, "List the vehicles with their main data");

@@ -54,10 +54,11 @@ std::string parameters_of(const RunResult& run) {
 
 // The port's declarations, except its name.
 std::string declarations_of(const RunResult& run) {
-  return fmt::format("modules {}, {} fraction bits, fixed step {}, {} outputs not recorded: {}",
-                     fmt::join(names_of(run.port_modules), " "), run.fraction_bits.value_or(0),
-                     run.fixed_step ? run.fixed_step->to_string() : "none",
-                     names_of(run.not_recorded).size(), run.not_recorded.to_string());
+  return fmt::format(
+      "modules {}, {} fraction bits, fixed step {}, lacks {}",
+      fmt::join(names_of(run.port_modules), " "), run.fraction_bits.value_or(0),
+      run.fixed_step ? run.fixed_step->to_string() : "none",
+      run.lacks.any() ? fmt::format("{}", fmt::join(run.lacks.words, ", ")) : "nothing");
 }
 
 std::string limits_of(const RunResult& run) {

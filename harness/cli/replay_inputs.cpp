@@ -14,7 +14,7 @@ namespace {
 Result<void> set_parameters(const ReplayOptions& options, RecordedParts& trace) {
   for (const std::string& parameter : options.parameters) {
     const auto change = parse_parameter(parameter);
-    if (!change) return tl::unexpected(change.error());
+    if (!change) return fail(fmt::format("--param {}: {}", parameter, change.error().message));
     if (auto checked = check_parameter(trace.subject(), *change); !checked) {
       return fail(fmt::format("--param {}: {}", parameter, checked.error().message));
     }
@@ -26,7 +26,7 @@ Result<void> set_parameters(const ReplayOptions& options, RecordedParts& trace) 
 Result<void> check_parameters(const ReplayOptions& options, const FlightLog& log) {
   for (const std::string& parameter : options.parameters) {
     const auto change = parse_parameter(parameter);
-    if (!change) return tl::unexpected(change.error());
+    if (!change) return fail(fmt::format("--param {}: {}", parameter, change.error().message));
     std::string wrong;
     const auto has_it = [&](const LoggedUnit& unit) {
       const auto checked = check_parameter({log.profile, unit.module}, *change);

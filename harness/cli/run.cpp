@@ -11,6 +11,7 @@
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/interrupt.hpp"
 #include "harness/report/progress.hpp"
+#include "harness/verify/silent_topics.hpp"
 
 namespace attest::cli {
 namespace {
@@ -42,6 +43,7 @@ bool run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
   progress.finish();
   RunResult& run = plan.run;
   run.results = std::move(outcome.results);
+  settle_silent_topics(run.results);
   run.errors = std::move(outcome.errors);
   run.stopped_early = outcome.stopped_early;
   if (auto same = check_port(plan.host); !same) run.errors.push_back(same.error());

@@ -14,10 +14,11 @@
 
 #include "harness/cli/find_case.hpp"
 #include "harness/cli/released_suite.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/interrupt.hpp"
 #include "harness/core/version.hpp"
-#include "harness/golden/recorded.hpp"
+#include "harness/host/manifest.hpp"
 #include "harness/port/port.hpp"
 #include "harness/port/profiles.hpp"
 #include "harness/process/child.hpp"
@@ -43,7 +44,7 @@ Result<void> ask_port(const std::vector<std::string>& profiles, RunPlan& plan) {
   plan.run.port_modules = port->modules;
   plan.run.fraction_bits = port->fraction_bits;
   plan.run.fixed_step = port->fixed_step;
-  plan.run.not_recorded = port->not_recorded;
+  plan.run.lacks = port->lacks;
   plan.run.port_sha256 = plan.host.files->sha256();
   plan.run.port_files = port->files;
   return {};
@@ -65,33 +66,41 @@ Result<void> check_recorded(const std::vector<SelectedCase>& cases, const RunPla
   return {};
 }
 
-// Stores the parameters of --param. Errors: a parameter that no selected case can have; a recorded
-// port, or a suite whose reference is a port, because their outputs are known only for the
-// parameters of the cases.
+std::string text_of(const std::vector<ParameterChange>& parameters) {
+  std::string text;
+  for (const ParameterChange& parameter : parameters) {
+    text += fmt::format(" --param {}={}", parameter.name, parameter.value);
+  }
+  return text;
+}
+
+// Stores the parameters of --param, or those for which the outputs of a recorded port were made.
+// Errors: a parameter that no selected case can have; other parameters than those of the recorded
+// port; a suite whose reference is a port.
 Result<void> set_parameters(const RunOptions& options, const std::vector<SelectedCase>& cases,
                             RunPlan& plan) {
-  if (!kind_of(options.host.port).is_callable() && !options.parameters.empty()) {
-    return fail(
-        fmt::format("--param: the outputs in {} were recorded with the parameters of the "
-                    "cases; leave --param out",
-                    argument_of(options.host.port)));
+  auto parameters = parse_parameters(options.parameters, cases);
+  if (!parameters) return tl::unexpected(parameters.error());
+  if (!kind_of(options.host.port).is_callable()) {
+    const std::string folder = argument_of(options.host.port);
+    const auto manifest = read_manifest(folder);
+    if (!manifest) return tl::unexpected(manifest.error());
+    if (!parameters->empty() && *parameters != manifest->parameters) {
+      return fail(
+          fmt::format("--param: the outputs in {} are for {}; write inputs with other "
+                      "parameters by `attest vectors --param`",
+                      folder,
+                      manifest->parameters.empty() ? "the parameters of the cases"
+                                                   : text_of(manifest->parameters).substr(1)));
+    }
+    *parameters = manifest->parameters;
   }
-  if (!plan.run.suite_reference.empty() && !options.parameters.empty()) {
+  if (!plan.run.suite_reference.empty() && !parameters->empty()) {
     return fail(
         "--param: only attest's own law can compute the expected outputs for other parameters, and "
         "the reference of this suite is a port; leave --param out");
   }
-  for (const std::string& text : options.parameters) {
-    const auto change = parse_parameter(text);
-    if (!change) return tl::unexpected(change.error());
-    Result<void> accepted;
-    for (const SelectedCase& selected : cases) {
-      accepted = check_parameter(subject_of(selected.the_case), *change);
-      if (accepted) break;
-    }
-    if (!accepted) return fail(fmt::format("--param {}: {}", text, accepted.error().message));
-    plan.run.parameters.push_back(*change);
-  }
+  plan.run.parameters = *std::move(parameters);
   return {};
 }
 
@@ -112,11 +121,7 @@ Result<void> check_rerun(const RunOptions& options, const SuiteFolder& suite,
     }
   }
   const auto options_of = [](const RunResult& of) {
-    std::string text = fmt::format("--level {}", name_of(of.level));
-    for (const ParameterChange& change : of.parameters) {
-      text += fmt::format(" --param {}={}", change.name, change.value);
-    }
-    return text;
+    return fmt::format("--level {}{}", name_of(of.level), text_of(of.parameters));
   };
   if (options_of(*earlier) == options_of(run)) return {};
   return fail_at(options.select.rerun_failed,
@@ -174,7 +179,7 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
   VehicleModels vehicle_models(suite.models());
   auto jobs =
       case_jobs(*cases, std::make_shared<const Goldens>(suite.golden(), plan.suite), vehicle_models,
-                {plan.run.level, options.save_traces, plan.run.parameters}, plan.host);
+                {plan.run.level, options.save_traces, plan.run.parameters, true}, plan.host);
   if (!jobs) return tl::unexpected(jobs.error());
   plan.jobs = *std::move(jobs);
   plan.run.selection = options.select.narrowing();

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/golden/recorded.hpp"
 #include "harness/port/port.hpp"
 #include "harness/report/report.hpp"
 #include "harness/ulog/flight_log.hpp"
@@ -163,6 +164,24 @@ void add_reports(Command command, ReportOptions& options) {
       .flag("--github", options.github,
             "Print annotations for GitHub Actions, and add to the job summary")
       .group(option_group::reports);
+}
+
+Result<std::vector<ParameterChange>> parse_parameters(const std::vector<std::string>& texts,
+                                                      const std::vector<SelectedCase>& cases) {
+  std::vector<ParameterChange> parameters;
+  for (const std::string& text : texts) {
+    const auto change = parse_parameter(text);
+    Result<void> accepted;
+    if (!change) accepted = tl::unexpected(change.error());
+    for (const SelectedCase& selected : cases) {
+      if (!change) break;
+      accepted = check_parameter(subject_of(selected.the_case), *change);
+      if (accepted) break;
+    }
+    if (!accepted) return fail(fmt::format("--param {}: {}", text, accepted.error().message));
+    parameters.push_back(*change);
+  }
+  return parameters;
 }
 
 }  // namespace attest::cli

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/casefile/select.hpp"
 #include "harness/cli/command.hpp"
 
 namespace attest::cli {
@@ -42,5 +43,9 @@ Option add_jobs(Command command, int& jobs, const char* what,
 
 // The reports of `run` and `merge`.
 void add_reports(Command command, ReportOptions& options);
+
+// Parses the texts of --param. Errors: not NAME=VALUE; a parameter that no case can have.
+Result<std::vector<ParameterChange>> parse_parameters(const std::vector<std::string>& texts,
+                                                      const std::vector<SelectedCase>& cases);
 
 }  // namespace attest::cli

@@ -30,7 +30,9 @@ Result<std::size_t> write_vectors(const VectorOptions& options, const Globals& g
   }
   const auto cases = options.select.cases_in(suite->case_folders());
   if (!cases) return tl::unexpected(cases.error());
-  return write_recorded_vectors(options.folder, **format, *cases, fixed_step);
+  const auto parameters = parse_parameters(options.parameters, *cases);
+  if (!parameters) return tl::unexpected(parameters.error());
+  return write_recorded_vectors(options.folder, **format, *cases, fixed_step, *parameters);
 }
 
 int vectors_command(const VectorOptions& options, const Globals& globals) {
@@ -71,8 +73,8 @@ void add_from_log(Command command, VectorOptions& options) {
            "the log");
   add_assumed(command, options.assumed);
   command.find("--assume").needs(log);
-  for (const char* other :
-       {"--lint", "--format", "--fixed-step", "--filter", "--exclude", "--group", "--rate"}) {
+  for (const char* other : {"--lint", "--format", "--fixed-step", "--param", "--filter",
+                            "--exclude", "--group", "--rate"}) {
     log.excludes(command.find(other));
   }
 }
@@ -102,6 +104,12 @@ void add_vectors(const CommandLine& line) {
               "Only vectors at this rate whose ticks are one period apart; their timestamps "
               "are changed to begin at one period; default: all vectors, unchanged")
       .type("HZ")
+      .excludes(lint);
+  command
+      .option("--param", options->parameters,
+              "Replace a parameter of each case; `run --port recorded:DIR` then does the same")
+      .type("NAME=VALUE")
+      .one_each_time()
       .excludes(lint);
   add_selection(command, options->select, Selects::open_loop);
   add_from_log(command, *options);

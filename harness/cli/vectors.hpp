@@ -14,6 +14,7 @@ struct VectorOptions {
   std::string folder;
   std::string format = "csv";
   std::string fixed_step;  // a rate [Hz]; empty: no fixed step
+  std::vector<std::string> parameters;
   bool lint = false;
   // If not empty: the command makes a case from this log. The times are from the first step in the
   // log.

@@ -98,6 +98,7 @@ Comparison both(Comparison one, const Comparison& other) {
   if (other.tightest && (!one.tightest || other.tightest->ratio < one.tightest->ratio)) {
     one.tightest = other.tightest;
   }
+  one.largest.insert(one.largest.end(), other.largest.begin(), other.largest.end());
   if (one.mismatch.empty()) one.mismatch = other.mismatch;
   one.got_non_finite |= other.got_non_finite;
   return one;
@@ -113,6 +114,7 @@ TickComparer::TickComparer(const ChannelSet& got, const ChannelSet& want,
     result_.only_got[i] = !want[i];
   }
   chosen_ = outputs_by_stage(compared_);
+  largest_.resize(chosen_.size());
   if (!missing.empty()) {
     not_recorded_ = fmt::format("got lacks {}, which want has", fmt::join(missing, ", "));
   } else if (chosen_.empty()) {
@@ -132,6 +134,7 @@ void TickComparer::add(const Sample& got, const Sample& want,
   }
   allowed_.next(want, changes);
   const bool differs = outputs_differ(got, want);
+  if (differs) note_largest(got, want);
   if (differs && level_ != Level::events) {
     const bool is_first = !result_.first;
     ChannelSet deviating;
@@ -165,6 +168,10 @@ Comparison TickComparer::finish(std::size_t got_ticks, std::size_t want_ticks) {
     return incomparable;
   }
   result_.ticks = tick_;
+  result_.largest.clear();
+  for (std::size_t i = 0; i < chosen_.size(); ++i) {
+    if (largest_[i] > 0) result_.largest.push_back({chosen_[i], largest_[i]});
+  }
   return result_;
 }
 
@@ -196,6 +203,15 @@ void TickComparer::note(const Deviation& deviation) {
   if (!result_.first) result_.first = deviation;
   const double now = excess(deviation);
   if (now > (result_.worst ? excess(*result_.worst) : 0)) result_.worst = deviation;
+}
+
+void TickComparer::note_largest(const Sample& got, const Sample& want) {
+  for (std::size_t i = 0; i < chosen_.size(); ++i) {
+    const Channel& channel = channels()[chosen_[i]];
+    if (channel.type != ChannelType::f32) continue;
+    const double deviation = distance(float_of(channel, got), float_of(channel, want));
+    if (std::isfinite(deviation)) largest_[i] = std::max(largest_[i], deviation);
+  }
 }
 
 void TickComparer::note_headroom(std::size_t channel, double difference, double tolerance) {

@@ -47,6 +47,12 @@ struct Headroom {
   std::size_t channel = 0;
 };
 
+// The largest finite |got - want| of a signal.
+struct Largest {
+  std::size_t channel = 0;
+  double deviation = 0;
+};
+
 struct Comparison {
   std::size_t ticks = 0;  // that were compared
   std::size_t deviating_ticks = 0;
@@ -55,6 +61,7 @@ struct Comparison {
   // floats; the first of equal ones. Empty at the events level.
   std::optional<Deviation> worst;
   std::optional<Headroom> tightest;  // numeric level; empty if no passing value differs
+  std::vector<Largest> largest;      // of each float that differs, at every level
   std::string mismatch;              // why the traces cannot be compared; empty if they can
   std::string event;                 // at the events level: the difference at the first deviation
   ChannelSet only_got;               // outputs that only `got` has: they are not compared
@@ -95,11 +102,13 @@ class TickComparer {
  private:
   bool channel_agrees(std::size_t channel, const Sample& got, const Sample& want);
   void note(const Deviation& deviation);
+  void note_largest(const Sample& got, const Sample& want);
   void note_headroom(std::size_t channel, double difference, double tolerance);
 
   Level level_;
   ChannelSet compared_;              // outputs that both have
   std::vector<std::size_t> chosen_;  // the same, by stage
+  std::vector<double> largest_;      // of the channels in chosen_
   // The message if outputs of `want` are missing in `got`, or `want` has no output; else empty.
   std::string not_recorded_;
   std::size_t tick_ = 0;  // the next one to add

@@ -93,7 +93,7 @@ Result<std::size_t> matches(Trace got, Chosen calls, const Declarations& port, c
   Trace law = got;
   for (Sample& sample : law.samples) sample.clear_outputs();
   if (drive(in_chosen, subject, law)) return 0;
-  if (port.is_recorded) fill_in(port.not_recorded, law, got);
+  fill_in(port.lacks.outputs, law, got);
   return law.samples.size() - compare(got, law, tolerances).deviating_ticks;
 }
 

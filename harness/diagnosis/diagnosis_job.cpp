@@ -120,7 +120,7 @@ Result<VectorDiagnosis> DiagnosisJob::run(std::size_t) {
   const bool is_exact = level_ == Level::exact && partner_ == nullptr;
   auto library = is_exact ? library_matches(got, port, case_, at(level_)) : LibraryMatches();
   if (!library) return tl::unexpected(library.error());
-  if (port.is_recorded) fill_in(port.not_recorded, law, got);
+  fill_in(port.lacks.outputs, law, got);
   const Tolerances tolerances = at(Level::numeric);
   VectorSimilarity found =
       similarity(outputs_of(got), outputs_of(law), answers_of_faults(law, subject, partner_),

@@ -103,20 +103,6 @@ Result<void> check_parameter(const ModuleUnderTest& subject, const ParameterChan
   return {};
 }
 
-Result<ParameterChange> parse_parameter(const std::string& text) {
-  const auto equals = std::min(text.find('='), text.size());
-  const char* const end = text.data() + text.size();
-  float value = 0;
-  const auto [rest, error] = std::from_chars(std::min(text.data() + equals + 1, end), end, value);
-  if (equals == text.size() || error != std::errc{} || rest != end || !std::isfinite(value)) {
-    return fail(
-        fmt::format("--param {}: write NAME=VALUE with a finite number, such as "
-                    "MC_ROLL_P=6.5",
-                    text));
-  }
-  return ParameterChange{0, text.substr(0, equals), value};
-}
-
 void override_parameter(const ParameterChange& change, Trace& trace) {
   std::erase_if(trace.parameters,
                 [&](const ParameterChange& other) { return other.name == change.name; });

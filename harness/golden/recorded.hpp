@@ -73,10 +73,6 @@ Result<Recorded> read_recorded(const std::filesystem::path& file, const std::str
 // Errors: in that profile the module does not have such a parameter, or does not accept the value.
 Result<void> check_parameter(const ModuleUnderTest& subject, const ParameterChange& change);
 
-// Parses the text of --param: "MC_ROLL_P=6.5" is a change at tick 0. Errors: not NAME=VALUE with a
-// finite number.
-Result<ParameterChange> parse_parameter(const std::string& text);
-
 // The change replaces all changes of that parameter in the trace.
 void override_parameter(const ParameterChange& change, Trace& trace);
 

@@ -40,6 +40,7 @@ std::string change(const Declarations& said, const Declarations& now) {
        {changed("name", said.name, now.name), changed("version", said.version, now.version),
         changed("attest.unsupported_groups", words_of(said.unsupported_groups),
                 words_of(now.unsupported_groups)),
+        changed("attest.lacks", words_of(said.lacks.words), words_of(now.lacks.words)),
         changed("attest.arithmetic", words_of(said.fraction_bits), words_of(now.fraction_bits)),
         changed("attest.fixed_step", words_of(said.fixed_step), words_of(now.fixed_step)),
         changed("list of modules", words_of(said.modules), words_of(now.modules)),
@@ -70,12 +71,12 @@ Declarations Declarations::asked(const Port& port) {
   return {port.name(),
           port.version(),
           port.unsupported_groups(),
+          port.lacks(),
           port.fraction_bits(),
           port.fixed_step(),
           port.modules(),
           {},
           false,
-          {},
           port.files()};
 }
 

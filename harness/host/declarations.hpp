@@ -14,12 +14,12 @@ namespace attest {
 struct Declarations {
   std::string name, version;
   std::vector<std::string> unsupported_groups;
+  Lacks lacks;
   std::optional<int> fraction_bits;  // of a port in fixed point
   std::optional<Rate> fixed_step;    // of a port with a fixed sample time
   ModuleSet modules;
   std::vector<std::string> profiles;    // that it supports; empty unless requested
   bool is_recorded = false;             // its outputs are files; it cannot be called
-  ChannelSet not_recorded = {};         // outputs that its files lack; they are not judged
   std::vector<std::string> files = {};  // of a program: Port::files()
 
   // Asks a loaded port. The result has no profiles.

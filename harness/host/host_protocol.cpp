@@ -35,6 +35,7 @@ json to_json(const Declarations& says) {
               {"version", says.version},
               {"unsupported_groups", says.unsupported_groups},
               {"modules", says.modules.to_ulong()}};
+  if (says.lacks.any()) out["lacks"] = says.lacks.words;
   if (says.fraction_bits) out["fraction_bits"] = *says.fraction_bits;
   if (says.fixed_step) out["fixed_step"] = says.fixed_step->to_string();
   if (!says.files.empty()) out["files"] = says.files;
@@ -51,6 +52,11 @@ Declarations declarations_from(JsonReader in) {
        {wrong_in_declared(says.name, says.version, says.unsupported_groups),
         wrong_in_files(says.files)}) {
     if (!wrong.empty()) in.wrong(wrong);
+  }
+  if (in.has("lacks")) {
+    const auto lacks = Lacks::parse(in.texts("lacks"));
+    if (!lacks) in.wrong("lacks", "is wrong: " + lacks.error().message);
+    if (lacks) says.lacks = *lacks;
   }
   if (in.has("fraction_bits")) {
     const auto bits = in.integer("fraction_bits", fewest_fraction_bits, most_fraction_bits);

@@ -26,9 +26,9 @@ constexpr const char* heading =
     "# You may change the values of these tables:\n"
     "#\n"
     "#     [port]     name, version; arithmetic = \"fixed:22\" of a port in fixed point;\n"
-    "#                unsupported_groups\n"
-    "#     [outputs]  time: the unit of `timestamp`, \"s\", \"ms\" or \"us\"; not_recorded:\n"
-    "#                outputs that you do not have\n"
+    "#                unsupported_groups; lacks: outputs, features and constant parameters\n"
+    "#                that the port has not, such as \"mc_att_ctrl_status\" or \"battery\"\n"
+    "#     [outputs]  time: the unit of `timestamp`, \"s\", \"ms\" or \"us\"\n"
     "#     [columns]  your name = \"its signal\", for columns that have other names\n"
     "\n";
 
@@ -57,6 +57,9 @@ void read_port(const TomlTable& table, Manifest& manifest) {
   const auto wrong =
       wrong_in_declared(manifest.port_name, manifest.port_version, manifest.unsupported_groups);
   if (!wrong.empty()) table.error("name", wrong);
+  const auto lacks = Lacks::parse(texts(table, "lacks"));
+  if (lacks) manifest.lacks = *lacks;
+  if (!lacks) table.error("lacks", lacks.error().message);
   if (const std::string arithmetic = table.text("arithmetic", ""); !arithmetic.empty()) {
     const auto bits = parse_fraction_bits(arithmetic);
     if (bits) manifest.fraction_bits = *bits;
@@ -73,9 +76,6 @@ void read_outputs(const TomlTable& table, Manifest& manifest) {
   manifest.time = table.text("time", manifest.time);
   if (manifest.time != "s" && manifest.time != "ms" && manifest.time != "us") {
     table.error("time", fmt::format("`{}` is no unit of time; write s, ms or us", manifest.time));
-  }
-  for (const std::string& name : texts(table, "not_recorded")) {
-    manifest.not_recorded |= outputs_named(name, table, "not_recorded");
   }
 }
 
@@ -95,6 +95,12 @@ Result<Manifest> read_manifest(const std::filesystem::path& folder) {
       outputs_named(manifest.columns[name], table, name);
     }
   }
+  if (root.has("parameters")) {
+    const TomlTable table = root.table("parameters");
+    for (const std::string& name : table.keys()) {
+      manifest.parameters.push_back({0, name, static_cast<float>(table.number(name))});
+    }
+  }
   const TomlTable vectors = root.table("vectors");
   for (const std::string& id : vectors.keys()) manifest.vectors[id] = vectors.text(id);
   if (auto done = toml->finish(); !done) return tl::unexpected(done.error());
@@ -108,15 +114,14 @@ Result<void> write_manifest(const std::filesystem::path& folder, const Manifest&
   toml.set("port", "unsupported_groups", manifest.unsupported_groups);
   const std::string arithmetic =
       manifest.fraction_bits ? fmt::format("fixed:{}", *manifest.fraction_bits) : "";
+  toml.set("port", "lacks", manifest.lacks.words);
   toml.set("port", "arithmetic", arithmetic);
   if (manifest.fixed_step) toml.set("port", "fixed_step_hz", manifest.fixed_step->to_string());
   toml.set("outputs", "time", manifest.time);
-  std::vector<std::string> not_recorded;
-  for (const std::string_view name : names_of(manifest.not_recorded)) {
-    not_recorded.emplace_back(name);
-  }
-  toml.set("outputs", "not_recorded", not_recorded);
   for (const auto& [name, channel] : manifest.columns) toml.set("columns", name, channel);
+  for (const ParameterChange& set : manifest.parameters) {
+    toml.set("parameters", set.name, static_cast<double>(set.value));
+  }
   for (const auto& [id, hash] : manifest.vectors) toml.set("vectors", id, hash);
   return write_file(folder / manifest_name, heading + toml.to_string());
 }

@@ -19,7 +19,7 @@
 #include "harness/core/rate.hpp"
 #include "harness/core/result.hpp"
 #include "harness/host/file_format.hpp"
-#include "harness/trace/channels.hpp"
+#include "harness/port/lacks.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace attest {
@@ -31,15 +31,18 @@ struct Manifest {
   std::string port_name = "recorded";
   std::string port_version;
   std::vector<std::string> unsupported_groups;
+  Lacks lacks;  // the files need not have its outputs
   std::optional<int> fraction_bits;
   std::optional<Rate> fixed_step;  // if set, the first timestamp is one period
 
   // [outputs]
   std::string time = "us";  // unit of the column `timestamp`: "s", "ms" or "us"
-  ChannelSet not_recorded;  // outputs that the files do not have; not judged
 
   // [columns]: from a name in the files of outputs to the name of a channel.
   std::map<std::string, std::string> columns;
+
+  // [parameters]: those of `attest vectors --param`, which replace those of the cases.
+  std::vector<ParameterChange> parameters;
 
   // [vectors]: from an id, "px4-v1.5.5/attitude/roll_30@250hz", to the SHA-256 of its inputs.
   std::map<std::string, std::string> vectors;

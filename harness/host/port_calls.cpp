@@ -136,6 +136,7 @@ class NotedPort final : public Port {
   std::vector<std::string> unsupported_groups() const override {
     return port_.unsupported_groups();
   }
+  const Lacks& lacks() const override { return port_.lacks(); }
   std::optional<int> fraction_bits() const override { return port_.fraction_bits(); }
   std::optional<Rate> fixed_step() const override { return port_.fixed_step(); }
   bool is_one_at_a_time() const override { return port_.is_one_at_a_time(); }

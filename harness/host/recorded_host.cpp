@@ -40,10 +40,10 @@ Declarations said_by(const Manifest& manifest) {
   says.name = manifest.port_name;
   says.version = manifest.port_version;
   says.unsupported_groups = manifest.unsupported_groups;
+  says.lacks = manifest.lacks;
   says.fraction_bits = manifest.fraction_bits;
   says.fixed_step = manifest.fixed_step;
   says.is_recorded = true;
-  says.not_recorded = manifest.not_recorded;
   for (const auto& [id, hash] : manifest.vectors) {
     const std::string profile = profile_of(id);
     if (says.profiles.empty() || says.profiles.back() != profile) says.profiles.push_back(profile);

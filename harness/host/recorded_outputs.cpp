@@ -168,7 +168,7 @@ std::string wrong_rows(const Table& table, const ColumnChannels& channel_of,
 std::string missing_outputs(const Table& table, const ChannelSet& present, const Manifest& manifest,
                             const Trace& trace) {
   const ChannelSet wanted =
-      channels_of(module_of(trace.present), "out/") & ~manifest.not_recorded & ~present;
+      channels_of(module_of(trace.present), "out/") & ~manifest.lacks.outputs & ~present;
   if (wanted.none()) return "";
   std::vector<std::string> names;
   for (std::size_t i = 0; i < channels().size(); ++i) {
@@ -178,7 +178,7 @@ std::string missing_outputs(const Table& table, const ChannelSet& present, const
   const std::size_t others = names.size() - std::min(names.size(), most);
   names.resize(std::min(names.size(), most));
   std::string message = fmt::format(
-      "no column {}{}; add it, name it in [columns] of {}, or list it under not_recorded there",
+      "no column {}{}; add it, name it in [columns] of {}, or list it under lacks there",
       fmt::join(names, ", "), others == 0 ? "" : fmt::format(" (nor {} others)", others),
       manifest_name);
   if (const auto ignored = ignored_columns(table, manifest, module_of(trace.present));
@@ -213,14 +213,14 @@ Result<ChannelSet> present_in(const Table& table, const ColumnChannels& channel_
   return present;
 }
 
-// Clears the outputs, but sets each flag `published` that the manifest lists as not recorded to 1.
+// Clears the outputs, but sets each flag `published` of the outputs that the port lacks to 1.
 void clear_outputs(const Manifest& manifest, Trace& trace) {
   const Module module = module_of(trace.present);
   for (Sample& sample : trace.samples) {
     sample.clear_outputs();
     for (std::size_t i = 0; i < channels().size(); ++i) {
       const Channel& channel = channels()[i];
-      if (channel.module != module || !manifest.not_recorded[i]) continue;
+      if (channel.module != module || !manifest.lacks.outputs[i]) continue;
       if (channel.is_published_flag()) set_value(channel, sample, 1);
     }
   }
@@ -274,7 +274,7 @@ Result<void> set_recorded_outputs(const Table& table, const Manifest& manifest,
   }
   clear_outputs(manifest, trace);
   for (std::size_t i = 0; i < table.size(); ++i) {
-    if (!channel_of[i] || manifest.not_recorded[*channel_of[i]]) continue;
+    if (!channel_of[i] || manifest.lacks.outputs[*channel_of[i]]) continue;
     const Channel& channel = channels()[*channel_of[i]];
     if (!channel.is_output()) continue;
     if (auto set = set_outputs(table[i], channel, file, trace); !set) return set;

@@ -14,15 +14,16 @@ namespace attest {
 class AbiUnit final : public Unit {
  public:
   // `self`: the unit that the table made. `timestamp_sample` is null if the unit does not need the
-  // time of the sample.
+  // time of the sample. `lacks` outlives this.
   AbiUnit(const ModuleAbi& abi, const void* table, void* self,
-          const attest_timestamp_sample* timestamp_sample)
-      : abi_(abi), table_(table), self_(self), timestamp_sample_(timestamp_sample) {}
+          const attest_timestamp_sample* timestamp_sample, const Lacks& lacks)
+      : abi_(abi), table_(table), self_(self), timestamp_sample_(timestamp_sample), lacks_(lacks) {}
   ~AbiUnit() override { abi_.destroy(table_, self_); }
   AbiUnit(const AbiUnit&) = delete;
   AbiUnit& operator=(const AbiUnit&) = delete;
 
   int set_parameter(const std::string& name, float value) override {
+    if (const auto* constant = lacks_.constant(name)) return constant->answer_to(value);
     return abi_.set_parameter(table_, self_, name.c_str(), value);
   }
   int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
@@ -36,26 +37,36 @@ class AbiUnit final : public Unit {
   const void* table_;
   void* self_;
   const attest_timestamp_sample* timestamp_sample_;
+  const Lacks& lacks_;
 };
+
+// The words of a list that a port declares as text: "sticks, acro".
+inline std::vector<std::string> words_of_list(const char* list) {
+  std::vector<std::string> words;
+  std::istringstream text(list ? list : "");
+  for (std::string word; std::getline(text >> std::ws, word, ',');) {
+    word.erase(word.find_last_not_of(" \t\r\n") + 1);
+    words.push_back(word);
+  }
+  return words;
+}
 
 // `owner` keeps the memory of the table alive, for example a loaded library.
 class AbiPort final : public Port {
  public:
   explicit AbiPort(const attest_unit& table, std::shared_ptr<void> owner = nullptr)
-      : owner_(std::move(owner)), table_(table) {}
+      : owner_(std::move(owner)), table_(table), lacks_(declared_lacks().value_or(Lacks())) {}
 
   std::string name() const override { return table_.name; }
   std::string version() const override { return table_.version; }
   std::vector<std::string> unsupported_groups() const override {
-    const auto* list = extension<char>(ATTEST_EXTENSION_UNSUPPORTED_GROUPS);
-    std::vector<std::string> groups;
-    std::istringstream names(list ? list : "");
-    for (std::string name; std::getline(names >> std::ws, name, ',');) {
-      name.erase(name.find_last_not_of(" \t\r\n") + 1);
-      groups.push_back(name);
-    }
-    return groups;
+    return words_of_list(extension<char>(ATTEST_EXTENSION_UNSUPPORTED_GROUPS));
   }
+  // Errors: those of Lacks::parse(). lacks() is then empty.
+  Result<Lacks> declared_lacks() const {
+    return Lacks::parse(words_of_list(extension<char>(ATTEST_EXTENSION_LACKS)));
+  }
+  const Lacks& lacks() const override { return lacks_; }
   std::optional<int> fraction_bits() const override {
     const auto* arithmetic = extension<char>(ATTEST_EXTENSION_ARITHMETIC);
     if (arithmetic == nullptr) return std::nullopt;
@@ -87,7 +98,7 @@ class AbiPort final : public Port {
     const auto* times = is_controller
                             ? extension<attest_timestamp_sample>(ATTEST_EXTENSION_TIMESTAMP_SAMPLE)
                             : nullptr;
-    return std::make_unique<AbiUnit>(info.abi, table, self, times);
+    return std::make_unique<AbiUnit>(info.abi, table, self, times, lacks_);
   }
 
  private:
@@ -98,6 +109,7 @@ class AbiPort final : public Port {
 
   std::shared_ptr<void> owner_;
   const attest_unit& table_;
+  Lacks lacks_;
 };
 
 }  // namespace attest

@@ -182,6 +182,10 @@ Result<Hello> parse_hello(std::string_view line) {
   read_modules(members, hello);
   hello.unsupported_groups =
       members.optional<std::vector<std::string>>("unsupported_groups", "a list of groups");
+  const auto lacks = Lacks::parse(members.optional<std::vector<std::string>>(
+      "lacks", "a list of features, outputs and constant parameters"));
+  if (lacks) hello.lacks = *lacks;
+  if (!lacks) members.set_error("is wrong: `lacks`: " + lacks.error().message);
   read_numbers(members, hello);
   hello.files = members.optional<std::vector<std::string>>(
       "files", "a list of the paths of further files of the port");

@@ -8,6 +8,7 @@
 
 #include "harness/core/rate.hpp"
 #include "harness/core/result.hpp"
+#include "harness/port/lacks.hpp"
 #include "harness/trace/module.hpp"
 
 namespace attest {
@@ -24,6 +25,7 @@ struct Hello {
   ModuleSet modules;  // with the controller if one of the profiles has it
   bool has_batch = false;
   std::vector<std::string> unsupported_groups;
+  Lacks lacks;
   std::optional<int> fraction_bits;
   std::optional<Rate> fixed_step;
   std::vector<std::string> files;  // further files of the program, which the port's hash covers

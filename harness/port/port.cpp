@@ -10,6 +10,11 @@
 
 namespace attest {
 
+const Lacks& Port::lacks() const {
+  static const Lacks nothing;
+  return nothing;
+}
+
 std::string wrong_in_name(std::string_view name) {
   constexpr std::size_t longest = 200;
   if (name.size() > longest) return fmt::format("is longer than {} bytes", longest);

@@ -16,6 +16,7 @@
 #include "controller/attest_unit.h"
 #include "harness/core/rate.hpp"
 #include "harness/core/result.hpp"
+#include "harness/port/lacks.hpp"
 #include "harness/trace/module.hpp"
 
 namespace attest {
@@ -91,6 +92,8 @@ class Port {
 
   // The groups of cases that the port declares as unsupported.
   virtual std::vector<std::string> unsupported_groups() const { return {}; }
+
+  virtual const Lacks& lacks() const;  // what it declares that it has not; nothing by default
 
   // Fraction bits of a port in fixed point; empty for other arithmetic.
   virtual std::optional<int> fraction_bits() const { return std::nullopt; }

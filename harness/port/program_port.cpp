@@ -21,13 +21,15 @@ using Talk = std::shared_ptr<Conversation>;
 
 class ProgramUnit final : public Unit {
  public:
-  ProgramUnit(Talk talk, std::uint32_t number, Module module)
-      : talk_(std::move(talk)), number_(number), info_(info_of(module)) {}
+  // `lacks` outlives this.
+  ProgramUnit(Talk talk, std::uint32_t number, Module module, const Lacks& lacks)
+      : talk_(std::move(talk)), number_(number), info_(info_of(module)), lacks_(lacks) {}
   ~ProgramUnit() override { talk_->destroy_quietly(number_); }
   ProgramUnit(const ProgramUnit&) = delete;
   ProgramUnit& operator=(const ProgramUnit&) = delete;
 
   int set_parameter(const std::string& name, float value) override {
+    if (const auto* constant = lacks_.constant(name)) return constant->answer_to(value);
     const std::lock_guard lock(talk_->mutex());
     return talk_->set_parameter(number_, name, value);
   }
@@ -76,6 +78,7 @@ class ProgramUnit final : public Unit {
   Talk talk_;
   std::uint32_t number_;
   const ModuleInfo& info_;
+  const Lacks& lacks_;
   ProgramStep step_;
   std::vector<ProgramStep> batch_;
 };
@@ -88,6 +91,7 @@ class ProgramPort final : public Port {
   std::string name() const override { return hello_.name; }
   std::string version() const override { return hello_.version; }
   std::vector<std::string> unsupported_groups() const override { return hello_.unsupported_groups; }
+  const Lacks& lacks() const override { return hello_.lacks; }
   std::optional<int> fraction_bits() const override { return hello_.fraction_bits; }
   std::optional<Rate> fixed_step() const override { return hello_.fixed_step; }
   bool is_one_at_a_time() const override { return true; }
@@ -103,7 +107,9 @@ class ProgramPort final : public Port {
     if (talk_->is_over()) start_again();
     const std::uint32_t number = ++units_;
     const int result = talk_->create(number, module, profile, definition);
-    if (result == ATTEST_OK) return std::make_unique<ProgramUnit>(talk_, number, module);
+    if (result == ATTEST_OK) {
+      return std::make_unique<ProgramUnit>(talk_, number, module, hello_.lacks);
+    }
     if (result == ATTEST_UNSUPPORTED) return nullptr;
     throw PortBroke(
         PortBroke::How::rules,

@@ -98,6 +98,9 @@ Result<std::unique_ptr<Port>> open_shared_library(const std::string& path) {
   auto port = std::make_unique<AbiPort>(*unit, library->handle());
   const auto wrong = wrong_in_declared(port->name(), port->version(), port->unsupported_groups());
   if (!wrong.empty()) return fail_at(path, fmt::format("what it declares is wrong: {}", wrong));
+  if (const auto lacks = port->declared_lacks(); !lacks) {
+    return fail_at(path, fmt::format("{}: {}", ATTEST_EXTENSION_LACKS, lacks.error().message));
+  }
   return port;
 }
 

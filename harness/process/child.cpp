@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
@@ -205,15 +204,38 @@ std::string Child::last_printed() const {
   return words.empty() ? "" : "; it last printed: " + words;
 }
 
+std::string last_words_in(std::string_view text) {
+  constexpr std::size_t most = 400;
+  const auto line_at = [&](std::size_t begin) {
+    return text.substr(begin, text.find('\n', begin) - begin);
+  };
+  const std::size_t end = text.find_last_not_of(" \t\r\n");
+  if (end == std::string_view::npos) return "";
+  text = text.substr(0, end + 1);
+  for (const std::string_view sign :
+       {" panicked at ", "panic: ", "ERROR: AddressSanitizer", ": runtime error: "}) {
+    const std::size_t found = text.rfind(sign);
+    if (found == std::string_view::npos) continue;
+    const std::size_t begin = text.substr(0, found).rfind('\n') + 1;  // 0 in the first line
+    const std::string_view line = line_at(begin);
+    const std::size_t next = begin + line.size() + 1;
+    const bool has_message = line.ends_with(':') && next < text.size();  // Rust since 1.73
+    const std::string words =
+        has_message ? fmt::format("{} {}", line, line_at(next)) : std::string(line);
+    return words.substr(0, most);
+  }
+  const std::string_view last = text.substr(text.rfind('\n') + 1);
+  return std::string(last.substr(last.size() - std::min(last.size(), most)));
+}
+
 std::string Child::last_words() const {
-  constexpr off_t enough = 400;
+  constexpr off_t enough = 16384;  // a panic with its backtrace
   const off_t size = ::lseek(output_, 0, SEEK_END);
   const off_t begin = std::max<off_t>(size - enough, 0);
   std::string text(static_cast<std::size_t>(std::max<off_t>(size - begin, 0)), '\0');
   const ssize_t count = ::pread(output_, text.data(), text.size(), begin);
   text.resize(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
-  return text.substr(text.rfind('\n') + 1);
+  return last_words_in(text);
 }
 
 }  // namespace attest

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "harness/core/result.hpp"
@@ -66,8 +67,7 @@ class Child {
   // After end(): the child exited by itself, with status 0.
   bool has_exited_well() const { return has_exited_well_; }
 
-  // The last line that the child printed on stdout or stderr, at most its last 400 bytes. Empty:
-  // the child printed nothing.
+  // last_words_in() of what the child printed on stdout and stderr.
   std::string last_words() const;
   std::string last_printed() const;  // "; it last printed: LAST WORDS", or empty
 
@@ -85,5 +85,9 @@ class Child {
 // With a barrier the work is code of others.
 [[noreturn]] void run_in_child(const Barrier* barrier, const ChildFiles& files,
                                const Child::Work& work);
+
+// The line of the last panic in a text that a program printed (of Rust, Go or a sanitizer), with
+// its message; if there is none, the last line. At most 400 bytes. Empty: the text is blank.
+std::string last_words_in(std::string_view text);
 
 }  // namespace attest

@@ -9,6 +9,7 @@
 
 #include "harness/report/failure_text.hpp"
 #include "harness/report/text.hpp"
+#include "harness/verify/declared_lacks.hpp"
 
 namespace attest {
 namespace {
@@ -125,6 +126,13 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
                    "  it tests: {}\n",
                    diagnosis.specific_case, counted(diagnosis.shown_by_it, "fault"),
                    one_line(diagnosis.why));
+}
+
+std::string needless_lacks_text(const RunResult& run) {
+  const std::vector<std::string> had = needless_lacks(run.results);
+  if (had.empty()) return "";
+  return fmt::format("the port declares that it lacks {}, but it has {}", fmt::join(had, ", "),
+                     had.size() == 1 ? "that" : "them");
 }
 
 }  // namespace attest

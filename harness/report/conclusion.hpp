@@ -24,4 +24,7 @@ std::string first_stages(const RunResult& run);
 // at its end.
 std::string diagnosis_text(const Diagnosis& diagnosis);
 
+// "the port declares that it lacks tpa, but it has that"; empty if all declarations are true.
+std::string needless_lacks_text(const RunResult& run);
+
 }  // namespace attest

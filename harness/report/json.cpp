@@ -45,9 +45,11 @@ ordered_json results(const RunResult& run) {
   for (const VectorResult& result : run.results) {
     const nlohmann::json all = to_json(result);
     ordered_json entry;
-    for (const char* key : {"id", "profile", "group", "name", "rate", "vehicle", "plant", "verdict",
-                            "reason", "exact_only", "by_golden", "compared", "ticks",
-                            "deviating_ticks", "first", "worst", "tightest", "metrics", "after"}) {
+    for (const char* key :
+         {"id",      "profile",         "group",   "name",          "rate",      "vehicle",
+          "plant",   "verdict",         "reason",  "exact_only",    "by_golden", "compared",
+          "ticks",   "deviating_ticks", "first",   "worst",         "tightest",  "largest",
+          "metrics", "after",           "lacking", "has_after_all", "silent"}) {
       if (all.contains(key)) entry[key] = all[key];
     }
     out.push_back(std::move(entry));
@@ -131,9 +133,7 @@ ordered_json port(const RunResult& run) {
   out["modules"] = names_of(run.port_modules);
   if (run.fraction_bits) out["fraction_bits"] = *run.fraction_bits;
   if (run.fixed_step) out["fixed_step"] = run.fixed_step->to_string();
-  if (run.not_recorded.any()) {
-    out["not_recorded"] = names_of(run.not_recorded);
-  }
+  if (run.lacks.any()) out["lacks"] = run.lacks.words;
   return out;
 }
 

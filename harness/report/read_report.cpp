@@ -58,12 +58,10 @@ void read_port(JsonReader reader, RunResult& run) {
   }
   if (reader.has("fixed_step"))
     run.fixed_step = rate_from(reader, reader.text("fixed_step")).motor_unit;
-  if (!reader.has("not_recorded")) return;
-  for (const std::string& name : reader.texts("not_recorded")) {
-    const ChannelSet named = channels_named(name);
-    run.not_recorded |= named;
-    if (named.none()) reader.wrong(fmt::format("there is no signal `{}`", name));
-  }
+  if (!reader.has("lacks")) return;
+  const auto lacks = Lacks::parse(reader.texts("lacks"));
+  if (lacks) run.lacks = *lacks;
+  if (!lacks) reader.wrong("`lacks`: " + lacks.error().message);
 }
 
 void read_suite(JsonReader reader, RunResult& run) {

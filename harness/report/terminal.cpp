@@ -13,6 +13,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "harness/report/accuracy.hpp"
 #include "harness/report/conclusion.hpp"
 #include "harness/report/document.hpp"
 #include "harness/report/failure_text.hpp"
@@ -196,6 +197,7 @@ std::string matrices(const RunResult& run, TerminalStyle style) {
     }
     out += render_text(table, style) + "\n";
   }
+  if (const auto accuracy = accuracy_of(run)) out += render_text(*accuracy, style) + "\n";
   const bool is_plain = run.count(Verdict::pass) == run.results.size();
   return is_plain ? out : out + "n/m: n of m vectors passed; +k: k counted apart\n\n";
 }
@@ -243,7 +245,9 @@ std::string render_summary(const RunResult& run, double wall_s, TerminalStyle st
   std::string out = header(run) + verdict;
   if (diagnosis) out += diagnosis_text(*diagnosis);
   if (const std::string stages = first_stages(run); !stages.empty()) out += stages + "\n";
-  out += conformance(run) + "\n";
+  out += conformance(run);
+  if (const std::string lacks = needless_lacks_text(run); !lacks.empty()) out += lacks + "\n";
+  out += "\n";
   out += errors(run, style);
   out += matrices(run, style);
   out += failures(run, style, shown);

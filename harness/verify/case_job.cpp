@@ -64,7 +64,8 @@ Result<VectorResult> CaseJob::run(std::size_t task) {
   const bool is_last_of_case =
       task + 1 < vectors_.size() && vectors_[task + 1].the_case != vector.the_case;
   needs_new_process_ =
-      fails_a_run(result->verdict) && (result->verdict != Verdict::timeout || is_last_of_case);
+      host_->is_spent() ||
+      (fails_a_run(result->verdict) && (result->verdict != Verdict::timeout || is_last_of_case));
   judged_by_host_.push_back(result->id());
   return result;
 }

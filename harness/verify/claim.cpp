@@ -149,14 +149,6 @@ void say_what_was_not_run(const Groups& groups, const RunResult& run,
       fmt::format("{} not run", left_out == 1 ? "1 vector" : fmt::format("{} vectors", left_out)));
 }
 
-// "2 outputs not recorded (out/mc_att_ctrl_status.published, ...)"
-std::string outputs_without(const ChannelSet& not_recorded) {
-  const std::vector<std::string_view> names = names_of(not_recorded);
-  return fmt::format("{} not recorded ({})",
-                     names.size() == 1 ? "1 output" : fmt::format("{} outputs", names.size()),
-                     fmt::join(names, ", "));
-}
-
 // Adds the groups of which all vectors were run, but no outputs were compared.
 void say_what_was_not_compared(const Groups& groups, std::vector<std::string>& missing) {
   std::vector<std::string> names;
@@ -215,7 +207,9 @@ std::vector<std::string> missing_of(const Groups& groups, const RunResult& run,
   for (const ParameterChange& parameter : run.parameters) {
     missing.push_back(fmt::format("with {}={}", parameter.name, parameter.value));
   }
-  if (run.not_recorded.any()) missing.push_back(outputs_without(run.not_recorded));
+  if (run.lacks.any()) {
+    missing.push_back(fmt::format("lacks {}", fmt::join(run.lacks.words, ", ")));
+  }
   if (!run.timing.empty()) missing.emplace_back("at recorded times");
   if (run.fixed_step) {
     missing.push_back(fmt::format("fixed step of {} Hz", run.fixed_step->to_string()));

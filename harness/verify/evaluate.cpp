@@ -12,9 +12,11 @@
 #include "harness/golden/recorded.hpp"
 #include "harness/golden/reference.hpp"
 #include "harness/loop/open_loop.hpp"
+#include "harness/verify/declared_lacks.hpp"
 #include "harness/verify/fixed_step.hpp"
 #include "harness/verify/judge.hpp"
 #include "harness/verify/saved_traces.hpp"
+#include "harness/verify/silent_topics.hpp"
 #include "harness/verify/stopwatch.hpp"
 
 namespace attest {
@@ -23,17 +25,21 @@ namespace {
 // Drives a fresh unit through `answered`, which has the inputs of the vector, and judges its
 // outputs. After a fault, `answered` keeps only the ticks before it.
 void run_and_judge(Trace& answered, const Trace& want, const ModuleUnderTest& subject,
-                   PortHost& host, const Tolerances& tolerances,
-                   const std::filesystem::path& saved_traces, VectorResult& result) {
+                   PortHost& host, const Tolerances& tolerances, const JudgeOptions& options,
+                   VectorResult& result) {
   if (marks_declined(host.declarations(), result)) return;
+  const Lacks& lacks = host.declarations().lacks;
   const auto fault = host.drive(subject, answered);
-  if (host.declarations().is_recorded && !fault &&
-      !leaves_values_to_judge(host.declarations().not_recorded, want)) {
-    result.verdict = Verdict::skip;
-    result.reason = "no value is recorded: the manifest lists every output under not_recorded";
+  if (!fault && !leaves_values_to_judge(lacks.outputs, want)) {
+    result.verdict = Verdict::unsupported;
+    result.reason = "nothing is left to judge: the port declares that it lacks every output";
     return;
   }
-  if (host.declarations().is_recorded) fill_in(host.declarations().not_recorded, want, answered);
+  note_published(lacks, answered, result);
+  const ChannelSet silent = options.leaves_out_silent && !fault
+                                ? silent_outputs(answered, want, lacks.outputs, result)
+                                : ChannelSet();
+  fill_in(lacks.outputs | silent, want, answered);
   if (fault && !leaves_ticks_to_judge(*fault)) {
     judge(*fault, result);
   } else {
@@ -45,8 +51,8 @@ void run_and_judge(Trace& answered, const Trace& want, const ModuleUnderTest& su
     if (fault) judge_after(*fault, result);
   }
   if (fault) answered.keep_first(fault->tick);
-  if (!saves_traces(saved_traces, result)) return;
-  save_traces(saved_traces, subject, {answered, want, tolerances}, result);
+  if (!saves_traces(options.save_traces, result)) return;
+  save_traces(options.save_traces, subject, {answered, want, tolerances}, result);
 }
 
 // Runs a case that is compared at the exact level only at another level: its outputs are not
@@ -64,12 +70,11 @@ void run_uncompared(Trace inputs, const ModuleUnderTest& subject, PortHost& host
   result.exact_only = true;
 }
 
-// The expected outputs for inputs that differ from those of the golden: `begun` is the case with
-// the times for a port with a fixed step (fixed_step.hpp), and `parameters` are those of --param.
-// Errors: the reference does not agree with the golden of `the_case`.
-Result<ExpectedOutputs> expected_outputs_of_varied(const Case& the_case, const Case& begun,
-                                                   const Rate& rate, const Golden& golden,
-                                                   const std::vector<ParameterChange>& parameters) {
+// The expected outputs for `inputs`, which differ from those of the golden: they have the times for
+// a port with a fixed step (fixed_step.hpp), or other parameters. Errors: the reference does not
+// agree with the golden of `the_case`.
+Result<ExpectedOutputs> expected_outputs_of_varied(const Case& the_case, const Rate& rate,
+                                                   const Golden& golden, Trace inputs) {
   const auto checked = expected_outputs(the_case, rate, golden);
   if (!checked || golden.is_of_port()) {
     const char* const why = checked ? "the golden is of a port"
@@ -80,9 +85,7 @@ Result<ExpectedOutputs> expected_outputs_of_varied(const Case& the_case, const C
                     "parameters are not known{}",
                     rate.label(), why, checked ? "" : ": " + checked.error().to_string()));
   }
-  Trace inputs = stimulate(begun, rate);
-  for (const ParameterChange& parameter : parameters) override_parameter(parameter, inputs);
-  auto outputs = reference_outputs(subject_of(begun), std::move(inputs));
+  auto outputs = reference_outputs(subject_of(the_case), std::move(inputs));
   if (!outputs) return tl::unexpected(outputs.error());
   return ExpectedOutputs{*std::move(outputs), checked->is_exact};
 }
@@ -128,20 +131,24 @@ Result<VectorResult> evaluate_case(const Case& the_case, const Rate& rate, const
   Level level = options.level;
   VectorResult result = result_for(the_case, {rate, std::nullopt});
   if (has_other_steps(host.declarations(), the_case, rate, result)) return result;
-  const bool is_shifted = has_fixed_step(host.declarations(), the_case);
-  const auto parameters = accepted_by(subject_of(the_case), options.parameters);
+  const Lacks& lacks = host.declarations().lacks;
+  auto parameters = accepted_by(subject_of(the_case), options.parameters);
+  FeatureSet lacking;
+  if (lacks.any()) {
+    const Trace inputs = inputs_for(host.declarations(), the_case, rate);
+    if (!adds_constants(lacks, subject_of(the_case), inputs, parameters, result)) return result;
+    lacking = lacking_features(lacks, inputs, the_case.profile);
+  }
+  const auto inputs = [&] { return inputs_for(host.declarations(), the_case, rate, parameters); };
   if (the_case.exact_only && level != Level::exact) {
-    Trace inputs = inputs_for(host.declarations(), the_case, rate);
-    for (const ParameterChange& parameter : parameters) override_parameter(parameter, inputs);
-    run_uncompared(std::move(inputs), subject_of(the_case), host, result);
+    run_uncompared(inputs(), subject_of(the_case), host, result);
+    leave_out(lacking, result);
     result.elapsed_s = stopwatch.elapsed_s();
     return result;
   }
-  const auto expected = is_shifted || !parameters.empty()
-                            ? expected_outputs_of_varied(
-                                  the_case, is_shifted ? the_case.from_one_period_on() : the_case,
-                                  rate, golden, parameters)
-                            : expected_outputs(the_case, rate, golden);
+  const bool is_varied = has_fixed_step(host.declarations(), the_case) || !parameters.empty();
+  const auto expected = is_varied ? expected_outputs_of_varied(the_case, rate, golden, inputs())
+                                  : expected_outputs(the_case, rate, golden);
   if (!expected) return tl::unexpected(expected.error());
   if (level == Level::events && !has_events(the_case.module)) level = Level::numeric;
   if (level == Level::exact && !expected->is_exact) return other_bits(the_case, rate);
@@ -152,7 +159,8 @@ Result<VectorResult> evaluate_case(const Case& the_case, const Rate& rate, const
   for (Sample& sample : answered.samples) sample.clear_outputs();
   const std::size_t ticks = answered.samples.size();
   run_and_judge(answered, expected->trace, subject_of(the_case), host,
-                tolerances_of(the_case, level, bits, ticks), options.save_traces, result);
+                tolerances_of(the_case, level, bits, ticks), options, result);
+  leave_out(lacking, result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }
@@ -207,7 +215,8 @@ Result<std::size_t> count_ticks(TraceParts& recorded, std::size_t most_ticks, Mo
 Result<Comparison> drive_parts(TraceParts& recorded, std::size_t most_ticks,
                                ModuleUnderTest subject, PortHost& host,
                                const Tolerances& tolerances, std::optional<PortFault>& fault) {
-  TickComparer comparer(recorded.present(), recorded.present(), tolerances);
+  const ChannelSet judged = recorded.present() & ~host.declarations().lacks.outputs;
+  TickComparer comparer(judged, judged, tolerances);
   Trace answered;
   const auto ticks =
       for_each_part(recorded, most_ticks, [&](const Trace& want, std::size_t first, bool is_last) {

@@ -27,6 +27,9 @@ struct JudgeOptions {
   // outputs are then those of the reference, which must agree with the golden of the unchanged
   // case.
   std::vector<ParameterChange> parameters = {};
+  // Topics that the port never publishes are not compared. The caller decides about them when all
+  // vectors were judged (settle_silent_topics).
+  bool leaves_out_silent = false;
 };
 
 // A result that names its vector, or the file of a recorded trace; the other members have their

@@ -11,12 +11,14 @@
 #include "harness/golden/expected_outputs.hpp"
 #include "harness/golden/reference.hpp"
 #include "harness/loop/flight.hpp"
+#include "harness/verify/declared_lacks.hpp"
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/fixed_step.hpp"
 #include "harness/verify/flight_contradiction.hpp"
 #include "harness/verify/judge.hpp"
 #include "harness/verify/reference_comparison.hpp"
 #include "harness/verify/saved_traces.hpp"
+#include "harness/verify/silent_topics.hpp"
 #include "harness/verify/stopwatch.hpp"
 
 namespace attest {
@@ -190,12 +192,25 @@ Result<VectorResult> evaluate_with(const Course& course, const FlightPlan& plan,
   const Case& the_case = *course.the_case;
   const Level level = options.level == Level::exact ? Level::exact : Level::numeric;
   VectorResult result = result_for(the_case, plan.configuration);
-  if (marks_declined(host.declarations(), result)) return result;
-  const auto flown = host.fly(plan);
+  const Lacks& lacks = host.declarations().lacks;
+  if (marks_declined(host.declarations(), result) ||
+      excludes_flight(lacks, *course.the_case, result)) {
+    return result;
+  }
+  auto flown = host.fly(plan);
   if (!flown) return tl::unexpected(flown.error());
+  const FeatureSet lacking = lacking_features(lacks, *flown, result);
+  if (result.verdict == Verdict::unsupported) return result;
   const auto bits = host.declarations().fraction_bits;
   const auto fault = fault_of(course, plan, *flown);
   Result<void> judged;
+  for (Trace* trace : {&flown->trace, flown->attitude_trace ? &*flown->attitude_trace : nullptr}) {
+    if (fault || trace == nullptr || !judged) continue;
+    note_published(lacks, *trace, result);
+    trace->present &= ~lacks.outputs;
+    if (options.leaves_out_silent) judged = leave_out_silent(lacks, *trace, result);
+  }
+  if (!judged) return tl::unexpected(judged.error());
   if (!fault) {
     judged = judge_flight(the_case, *flown, reference, level, bits, result);
   } else if (leaves_ticks_to_judge(*fault)) {
@@ -211,6 +226,7 @@ Result<VectorResult> evaluate_with(const Course& course, const FlightPlan& plan,
     save_flight(options.save_traces, *flown->attitude_trace, tolerances, result);
   }
   result.elapsed_s = stopwatch.elapsed_s();
+  leave_out(lacking, result);
   return result;
 }
 

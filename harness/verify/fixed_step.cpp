@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "harness/casefile/stimulus.hpp"
+#include "harness/golden/recorded.hpp"
 
 namespace attest {
 namespace {
@@ -61,8 +62,14 @@ bool has_fixed_step(const Declarations& port, const Case& the_case) {
   return info_of(the_case.module).is_unit() && port.fixed_step.has_value();
 }
 
-Trace inputs_for(const Declarations& port, const Case& the_case, const Rate& rate) {
-  return stimulate(has_fixed_step(port, the_case) ? the_case.from_one_period_on() : the_case, rate);
+Trace inputs_for(const Declarations& port, const Case& the_case, const Rate& rate,
+                 const std::vector<ParameterChange>& parameters) {
+  Trace inputs =
+      stimulate(has_fixed_step(port, the_case) ? the_case.from_one_period_on() : the_case, rate);
+  for (const ParameterChange& parameter : parameters) {
+    if (check_parameter(subject_of(the_case), parameter)) override_parameter(parameter, inputs);
+  }
+  return inputs;
 }
 
 bool has_other_steps(const Declarations& port, const Case& the_case, const Rate& rate,

@@ -23,7 +23,9 @@ namespace attest {
 bool has_fixed_step(const Declarations& port, const Case& the_case);
 
 // The inputs of a vector for this port: of Case::from_one_period_on() if has_fixed_step().
-Trace inputs_for(const Declarations& port, const Case& the_case, const Rate& rate);
+// `parameters` replace those of the case, if its module and profile have them.
+Trace inputs_for(const Declarations& port, const Case& the_case, const Rate& rate,
+                 const std::vector<ParameterChange>& parameters = {});
 
 // Whether the port has a fixed step that the case does not keep: another rate, ticks that are not
 // exactly periodic, samples taken at other times, or a `start_s` of the case's own. If so, the

@@ -62,8 +62,9 @@ void leave_out_from(std::size_t tick, const Trace& want, Trace& answered) {
   }
 }
 
-void fill_in(const ChannelSet& not_recorded, const Trace& want, Trace& answered) {
-  const ChannelSet filled = not_recorded & channels_of(module_of(want.present));
+void fill_in(const ChannelSet& not_judged, const Trace& want, Trace& answered) {
+  const ChannelSet filled = not_judged & channels_of(module_of(want.present));
+  if (filled.none()) return;
   for (std::size_t i = 0; i < channels().size(); ++i) {
     if (!filled[i]) continue;
     for (std::size_t tick = 0; tick < answered.samples.size(); ++tick) {
@@ -73,14 +74,14 @@ void fill_in(const ChannelSet& not_recorded, const Trace& want, Trace& answered)
   keep_unpublished(answered);
 }
 
-bool leaves_values_to_judge(const ChannelSet& not_recorded, const Trace& want) {
+bool leaves_values_to_judge(const ChannelSet& not_judged, const Trace& want) {
   const Module module = module_of(want.present);
-  ChannelSet values = channels_of(module, "out/") & ~not_recorded;
+  ChannelSet values = channels_of(module, "out/") & ~not_judged;
   for (const OutputTopic& topic : output_topics(module)) {
     const Channel& flag = channels()[topic.published];
     values.reset(topic.published);
     const auto publishes = [&](const Sample& sample) { return is_published(flag, sample); };
-    if (!not_recorded[topic.published] || std::ranges::any_of(want.samples, publishes)) continue;
+    if (!not_judged[topic.published] || std::ranges::any_of(want.samples, publishes)) continue;
     values &= ~channels_of(module, fmt::format("out/{}.", topic.name));
   }
   return values.any();
@@ -109,6 +110,7 @@ void judge(const Comparison& comparison, VectorResult& result) {
   result.first = comparison.first;
   result.worst = comparison.worst;
   result.tightest = comparison.tightest;
+  result.largest = comparison.largest;
   result.reason = comparison.mismatch.empty() ? comparison.event : comparison.mismatch;
   if (comparison.agrees()) return;
   result.verdict = comparison.got_non_finite ? Verdict::non_finite : Verdict::fail;

@@ -26,14 +26,14 @@ bool leaves_ticks_to_judge(const PortFault& fault);
 // From `tick` on, `answered` gets the outputs of `want`, so that only earlier ticks are judged.
 void leave_out_from(std::size_t tick, const Trace& want, Trace& answered);
 
-// Copies the outputs `not_recorded` from `want` to `answered`, so that they are not judged. If
+// Copies the outputs `not_judged` from `want` to `answered`, so that they are not judged. If
 // `answered` then does not publish a topic at a tick, the topic keeps the values last published.
-void fill_in(const ChannelSet& not_recorded, const Trace& want, Trace& answered);
+void fill_in(const ChannelSet& not_judged, const Trace& want, Trace& answered);
 
-// Whether a recording without the outputs `not_recorded` leaves a value to compare with `want`: a
-// recorded output other than a `published`. If the `published` of its topic is not recorded, `want`
-// must publish that topic at a tick.
-bool leaves_values_to_judge(const ChannelSet& not_recorded, const Trace& want);
+// Whether a comparison with `want` without the outputs `not_judged` leaves a value: an output other
+// than a `published`. If the `published` of its topic is not judged, `want` must publish that topic
+// at a tick.
+bool leaves_values_to_judge(const ChannelSet& not_judged, const Trace& want);
 
 // Adds to the reason the mistake of the recording that would give these outputs (misrecording.hpp).
 void explain_recording(const Trace& answered, const Trace& want, VectorResult& result);

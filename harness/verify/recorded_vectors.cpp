@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/host/manifest.hpp"
 #include "harness/host/recorded_outputs.hpp"
@@ -26,20 +27,36 @@ std::string id_of(const Case& the_case, const RunConfiguration& configuration) {
   return result_for(the_case, configuration).id();
 }
 
+std::string text_of(const std::vector<ParameterChange>& parameters) {
+  std::vector<std::string> texts;
+  for (const ParameterChange& one : parameters) {
+    texts.push_back(fmt::format("{}={}", one.name, one.value));
+  }
+  return texts.empty() ? "the parameters of the cases" : fmt::format("{}", fmt::join(texts, ", "));
+}
+
 // The manifest of the folder, or a new one.
-Result<Manifest> manifest_for(const std::filesystem::path& folder, std::optional<Rate> fixed_step) {
+Result<Manifest> manifest_for(const std::filesystem::path& folder, std::optional<Rate> fixed_step,
+                              const std::vector<ParameterChange>& parameters) {
   std::error_code ignored;
   if (!std::filesystem::exists(folder / manifest_name, ignored)) {
     Manifest made;
     made.fixed_step = fixed_step;
+    made.parameters = parameters;
     return made;
   }
   auto manifest = read_manifest(folder);
-  if (!manifest || manifest->fixed_step == fixed_step) return manifest;
-  return fail_at(
-      (folder / manifest_name).string(),
-      fmt::format("is for a fixed step of {}; write these vectors to another folder",
-                  manifest->fixed_step ? manifest->fixed_step->to_string() + " Hz" : "none"));
+  if (!manifest) return manifest;
+  const auto another = [&](const std::string& what) {
+    return fail_at((folder / manifest_name).string(),
+                   fmt::format("is for {}; write these vectors to another folder", what));
+  };
+  if (manifest->fixed_step != fixed_step) {
+    return another("a fixed step of " +
+                   (manifest->fixed_step ? manifest->fixed_step->to_string() + " Hz" : "none"));
+  }
+  if (manifest->parameters != parameters) return another(text_of(manifest->parameters));
+  return manifest;
 }
 
 Result<void> write_vector(const std::filesystem::path& folder, const FileFormat& format,
@@ -63,8 +80,9 @@ Result<void> write_vector(const std::filesystem::path& folder, const FileFormat&
 Result<std::size_t> write_recorded_vectors(const std::filesystem::path& folder,
                                            const FileFormat& format,
                                            const std::vector<SelectedCase>& cases,
-                                           std::optional<Rate> fixed_step) {
-  auto manifest = manifest_for(folder, fixed_step);
+                                           std::optional<Rate> fixed_step,
+                                           const std::vector<ParameterChange>& parameters) {
+  auto manifest = manifest_for(folder, fixed_step, parameters);
   if (!manifest) return tl::unexpected(manifest.error());
   Declarations port;
   port.fixed_step = fixed_step;
@@ -72,7 +90,7 @@ Result<std::size_t> write_recorded_vectors(const std::filesystem::path& folder,
   for (const auto& [the_case, configurations] : cases) {
     for (const RunConfiguration& configuration : configurations) {
       if (!can_run(port, the_case, configuration)) continue;
-      const Trace inputs = inputs_for(port, the_case, configuration.rate.motor_unit);
+      const Trace inputs = inputs_for(port, the_case, configuration.rate.motor_unit, parameters);
       const std::string id = id_of(the_case, configuration);
       if (auto written = write_vector(folder, format, the_case, id, inputs); !written) {
         return tl::unexpected(written.error());
@@ -109,7 +127,8 @@ Result<RecordedVectors> check_recorded_vectors(const std::filesystem::path& fold
       if (!file) return tl::unexpected(file.error());
       if (known == manifest->vectors.end() || file->empty()) continue;
       if (known->second !=
-          sha256_of_inputs(inputs_for(port, the_case, configuration.rate.motor_unit))) {
+          sha256_of_inputs(
+              inputs_for(port, the_case, configuration.rate.motor_unit, manifest->parameters))) {
         return fail_at((folder / manifest_name).string(),
                        fmt::format("the inputs of {} are not those of this suite: another version "
                                    "of it wrote them. Write them again with `attest vectors`, and "

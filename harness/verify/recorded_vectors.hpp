@@ -16,13 +16,14 @@ namespace attest {
 // Writes the inputs of the vectors that a recorded port can run, a file each, and adds them to the
 // folder's manifest, which is made if there is none (host/manifest.hpp). Leaves out flights
 // (their inputs depend on the outputs), cases with two instances, and vectors that do not keep
-// `fixed_step`. The provenance.toml next to the files has the mixer definitions. Returns the
-// number of files. Errors: a file cannot be read or written; the manifest has another fixed step;
-// no vector is left.
+// `fixed_step`. `parameters` replace those of the cases. The provenance.toml next to the files has
+// the mixer definitions. Returns the number of files. Errors: a file cannot be read or written; the
+// manifest has another fixed step or other parameters; no vector is left.
 Result<std::size_t> write_recorded_vectors(const std::filesystem::path& folder,
                                            const FileFormat& format,
                                            const std::vector<SelectedCase>& cases,
-                                           std::optional<Rate> fixed_step);
+                                           std::optional<Rate> fixed_step,
+                                           const std::vector<ParameterChange>& parameters);
 
 struct RecordedVectors {
   std::size_t selected = 0;          // vectors that a recorded port can run

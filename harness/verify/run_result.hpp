@@ -9,6 +9,7 @@
 
 #include "harness/casefile/select.hpp"
 #include "harness/compare/tolerance.hpp"
+#include "harness/port/lacks.hpp"
 #include "harness/process/barrier.hpp"
 #include "harness/verify/verdict.hpp"
 
@@ -35,7 +36,7 @@ struct RunResult {
   std::optional<int> fraction_bits;         // of a port in fixed point
   std::optional<Rate> fixed_step;           // of a port with a fixed sample time
   std::vector<ParameterChange> parameters;  // of --param; they replace the cases' own
-  ChannelSet not_recorded;                  // outputs that a recorded port does not have
+  Lacks lacks;                              // declared by the port
   Level level = Level::numeric;
   std::vector<LoopRate> rates;      // selected, ascending
   std::string selection;            // the options that selected vectors, except --shard

@@ -72,11 +72,20 @@ struct VectorResult {
   std::size_t deviating_ticks = 0;
   std::optional<Deviation> first, worst;
   std::optional<Headroom> tightest;
+  std::vector<Largest> largest;
   std::vector<MetricResult> metrics;  // of a flight without a fault that did not end early
   double elapsed_s = 0;               // wall time; no verdict depends on it
   // The vectors that the same process of the port ran before, if this failure may depend on them:
   // it does not occur alone, or it is a timeout, which is not repeated.
   std::vector<std::string> after;
+  // Declared lacks (declared_lacks.hpp): the features because of which the vector is unsupported,
+  // and what the port has although it declares that it lacks it.
+  std::vector<std::string> lacking, has_after_all;
+  // Topics as "rate_unit/rate_ctrl_status" that the golden publishes (silent_topics.hpp): those
+  // that the port publishes too, and those that it does not publish at any tick. The latter were
+  // not compared.
+  std::vector<std::string> published, silent;
+  std::optional<Deviation> first_silence;  // the first tick at which a silent topic is due
 
   std::string case_id() const { return profile + "/" + group + "/" + name; }
   RunConfiguration configuration() const { return {rate, plant_configuration}; }

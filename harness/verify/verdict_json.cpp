@@ -15,6 +15,15 @@ namespace {
 
 using nlohmann::json;
 
+// The members that are lists of names, absent if empty.
+constexpr std::pair<const char*, std::vector<std::string> VectorResult::*> lists[] = {
+    {"after", &VectorResult::after},
+    {"lacking", &VectorResult::lacking},
+    {"has_after_all", &VectorResult::has_after_all},
+    {"published", &VectorResult::published},
+    {"silent", &VectorResult::silent},
+};
+
 std::string float_bits(double value) {
   return fmt::format("0x{:08x}", std::bit_cast<std::uint32_t>(static_cast<float>(value)));
 }
@@ -49,6 +58,12 @@ json deviation_to_json(const Deviation& deviation) {
 json headroom_to_json(const Headroom& headroom) {
   json out = {{"ratio", json_of(headroom.ratio)}, {"tick", headroom.tick}};
   name_channel(headroom.channel, out);
+  return out;
+}
+
+json largest_to_json(const Largest& largest) {
+  json out = {{"deviation", json_of(largest.deviation)}};
+  name_channel(largest.channel, out);
   return out;
 }
 
@@ -160,6 +175,9 @@ nlohmann::json to_json(const VectorResult& result) {
   if (result.first) out["first"] = deviation_to_json(*result.first);
   if (result.worst) out["worst"] = deviation_to_json(*result.worst);
   if (result.tightest) out["tightest"] = headroom_to_json(*result.tightest);
+  for (const Largest& largest : result.largest) {
+    out["largest"].push_back(largest_to_json(largest));
+  }
   if (result.plant_configuration) {
     out["vehicle"] = result.plant_configuration->vehicle;
     out["plant"] = name_of(result.plant_configuration->plant);
@@ -167,7 +185,10 @@ nlohmann::json to_json(const VectorResult& result) {
   for (const MetricResult& metric : result.metrics) {
     out["metrics"].push_back(metric_to_json(metric));
   }
-  if (!result.after.empty()) out["after"] = result.after;
+  for (const auto& [key, list] : lists) {
+    if (!(result.*list).empty()) out[key] = result.*list;
+  }
+  if (result.first_silence) out["first_silence"] = deviation_to_json(*result.first_silence);
   return out;
 }
 
@@ -204,8 +225,19 @@ Result<VectorResult> vector_result_from_json(const nlohmann::json& json) {
   if (reader.has("first")) out.first = deviation_from({reader.member("first"), error});
   if (reader.has("worst")) out.worst = deviation_from({reader.member("worst"), error});
   if (reader.has("tightest")) out.tightest = headroom_from({reader.member("tightest"), error});
+  if (reader.has("largest")) {
+    for (const auto& one : reader.list("largest")) {
+      JsonReader largest(one, error);
+      out.largest.push_back({channel_from(largest, "channel"), largest.real("deviation")});
+    }
+  }
   if (reader.has("vehicle")) out.plant_configuration = plant_configuration_from({json, error});
-  if (reader.has("after")) out.after = reader.texts("after");
+  for (const auto& [key, list] : lists) {
+    if (reader.has(key)) out.*list = reader.texts(key);
+  }
+  if (reader.has("first_silence")) {
+    out.first_silence = deviation_from({reader.member("first_silence"), error});
+  }
   if (reader.has("metrics")) {
     for (const auto& metric : reader.member("metrics")) {
       out.metrics.push_back(metric_from({metric, error}));

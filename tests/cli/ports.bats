@@ -128,6 +128,29 @@ TASKS
   lacks "fail:"
 }
 
+@test "what a port declares that it lacks is not judged, and the rest is" {
+  run "$ATTEST" run --port "lib:$PORTS/port_lacks.so" --profile px4-v1.5.5 --rate 250 \
+    --json lacks.json
+  [ "$status" -eq 0 ]
+  lacks "fail:"
+  has "because: lacks mc_att_ctrl_status, battery, tpa, MC_YAW_FF=0.25; only --rate 250"
+  has "the port declares that it lacks tpa, but it has that"
+  has "unsupported: the port declares that it lacks battery"
+  has "unsupported: MC_YAW_FF is 0.25 in the port, and this vector sets 0.8"
+  has "unsupported: MC_YAW_FF is 0.25 in the port, and flights have its default"
+  [ "$("$PYTHON" -c 'import json; print(json.load(open("lacks.json"))["port"]["lacks"])')" = \
+    "['mc_att_ctrl_status', 'battery', 'tpa', 'MC_YAW_FF=0.25']" ]
+}
+
+@test "a topic that a port never publishes is one failure, and the rest is judged" {
+  run "$ATTEST" run --port "lib:$PORTS/port_silent_topic.so" --profile px4-v1.5.5 --rate 250
+  [ "$status" -eq 1 ]
+  has "FAIL 1 failed;"
+  has "fail: the port never publishes mc_att_ctrl_status, which "
+  has "in out/mc_att_ctrl_status.published"
+  lacks "it looks like"
+}
+
 @test "a profile that the port refuses is skipped, and nothing compared is not success" {
   judged refuses_profile
   [ "$status" -eq 2 ]

@@ -55,7 +55,7 @@ answered() {
   answered cut "ends after tick" "it is cut off"
   answered gap "has no row for tick"
   answered unsorted "its rows are not in the order of time: row 1 is at"
-  answered no-integrals "no column out/mc_att_ctrl_status.published" "not_recorded"
+  answered no-integrals "no column out/mc_att_ctrl_status.published" "list it under lacks there"
   answered other-names "The file also has vehicle_p_sp"
 }
 
@@ -74,9 +74,7 @@ answered() {
   sed -i "s/^time = .*/time = 'us'/" vectors/manifest.toml
 
   answer --mistake no-integrals
-  integrals="'out/mc_att_ctrl_status.published'"
-  for axis in roll pitch yaw; do integrals+=", 'out/mc_att_ctrl_status.${axis}_rate_integ'"; done
-  sed -i "s#^not_recorded = .*#not_recorded = [$integrals]#" vectors/manifest.toml
+  sed -i "s#^lacks = .*#lacks = ['mc_att_ctrl_status']#" vectors/manifest.toml
   run "$ATTEST" run --port recorded:vectors "${filter[@]}" --json report.json
   [ "$status" -eq 0 ]
   "$PYTHON" - "$SOURCE/harness/report/report.schema.json" <<'CHECK'
@@ -84,9 +82,14 @@ import json, sys
 import jsonschema
 report = json.load(open("report.json"))
 jsonschema.Draft7Validator(json.load(open(sys.argv[1]))).validate(report)
-assert len(report["port"]["not_recorded"]) == 4, report["port"]
+assert report["port"]["lacks"] == ["mc_att_ctrl_status"], report["port"]
 CHECK
-  has "4 outputs not recorded (out/mc_att_ctrl_status.published,"
+  has "because: lacks mc_att_ctrl_status; "
+  sed -i "s#^lacks = .*#lacks = ['mc_att_ctrl_statu']#" vectors/manifest.toml
+  run "$ATTEST" run --port recorded:vectors "${filter[@]}"
+  [ "$status" -eq 2 ]
+  has "vectors/manifest.toml:"
+  has "did you mean \`mc_att_ctrl_status\`?"
 }
 
 @test "columns have any order and names, and others are ignored with a note" {
@@ -220,11 +223,11 @@ MAT
   has "this command must call the port"
 }
 
-# not_recorded NAME...: the outputs that the manifest lists.
+# not_recorded NAME...: the manifest lists the outputs as lacking.
 not_recorded() {
   local list
   list=$(printf "'%s', " "$@")
-  sed -i "s#^not_recorded = .*#not_recorded = [${list%, }]#" vectors/manifest.toml
+  sed -i "s#^lacks = .*#lacks = [${list%, }]#" vectors/manifest.toml
 }
 
 @test "a recording without a value is not judged, and a column that is not recorded is not read" {
@@ -240,8 +243,8 @@ not_recorded() {
     not_recorded "${names[@]}"
     run "$ATTEST" run --port recorded:vectors "${filter[@]}"
     [ "$status" -eq 2 ]
-    has "NONE 0 of 1 vector conform, 1 skip"
-    has "no value is recorded: the manifest lists every output under not_recorded"
+    has "NONE 0 of 1 vector conform, 1 unsupported"
+    has "nothing is left to judge: the port declares that it lacks every output"
   done
 
   not_recorded "${flags[@]}"
@@ -250,14 +253,26 @@ not_recorded() {
   mv unpublished $out
   run "$ATTEST" run --port recorded:vectors "${filter[@]}"
   [ "$status" -eq 0 ]
-  has "${#flags[@]} outputs not recorded"
+  has "because: lacks ${flags[0]}, "
 }
 
-@test "recorded outputs are those of the parameters of the cases" {
+@test "recorded outputs are those of the parameters for which their inputs were written" {
   filter=(--filter px4-v1.5.5/rates/p_alone@250hz)
   "$ATTEST" vectors vectors "${filter[@]}" >/dev/null
   answer
   run "$ATTEST" run --port recorded:vectors "${filter[@]}" --param MC_ROLLRATE_P=0.2
   [ "$status" -eq 2 ]
-  has "--param: the outputs in vectors were recorded with the parameters of the cases"
+  has "--param: the outputs in vectors are for the parameters of the cases"
+
+  run "$ATTEST" vectors vectors "${filter[@]}" --param MC_ROLLRATE_P=0.2
+  [ "$status" -eq 2 ]
+  has "is for the parameters of the cases; write these vectors to another folder"
+  rm -r vectors
+  "$ATTEST" vectors vectors "${filter[@]}" --param MC_ROLLRATE_P=0.2 >/dev/null
+  answer
+  for option in "" "--param MC_ROLLRATE_P=0.2"; do
+    run "$ATTEST" run --port recorded:vectors "${filter[@]}" $option
+    [ "$status" -eq 0 ]
+    has "because: with MC_ROLLRATE_P=0.2; "
+  done
 }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/report/accuracy.hpp"
 #include "harness/report/conclusion.hpp"
 #include "harness/report/document.hpp"
 #include "harness/report/failure_text.hpp"
@@ -124,12 +125,16 @@ Document run_document(const Report& report) {
   const Verdict conclusion = conclusion_of(run);
   Document document{{conclusion, std::string(outcome_of(conclusion)),
                      fmt::format("{} {}", run.port_name, run.port_version), conclusion_text(run)}};
+  if (std::string lacks = needless_lacks_text(run); !lacks.empty()) {
+    document.notes.push_back({std::move(lacks), false});
+  }
   for (const Error& error : run.errors) {
     document.notes.push_back({"error: " + error.to_string(), true});
   }
   document.sections = sections_of(report);
   document.facts = facts_of(run);
   document.tables = matrices_of(run);
+  if (auto accuracy = accuracy_of(run)) document.tables.push_back(*std::move(accuracy));
   document.results.emplace();
   for (const VectorResult& result : run.results) document.results->push_back(row_of(result, run));
   return document;

@@ -121,6 +121,8 @@ TEST(HostProtocol, EachMemberOfAGreetingHasARange) {
         {"/says/name", "a\nb"},
         {"/says/version", "\x1b[2J"},
         {"/says/version", 7},
+        {"/says/lacks", std::vector<std::string>(1001, "tpa")},
+        {"/says/lacks", json::array({"no such feature"})},
         {"/says/unsupported_groups", std::vector<std::string>(1001, "tpa")},
         {"/says/unsupported_groups", json::array({long_name})},
         {"/says/unsupported_groups", json::array({7})}}) {

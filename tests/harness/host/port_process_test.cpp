@@ -259,7 +259,7 @@ TEST(PortProcess, WhatTheStepSaysComesBack) {
 
 TEST(PortProcess, APortIsHeldToWhatItSaid) {
   HostOptions options;
-  options.said = Declarations{"another", "1", {}, {}, {}, ModuleSet(), {}};
+  options.said = Declarations{"another", "1", {}, {}, {}, {}, ModuleSet(), {}};
   const auto host = start_host(options);
   ASSERT_TRUE(host);
   Trace trace = pitching();
@@ -305,9 +305,9 @@ TEST(PortProcess, DeathInTheMiddleOfAnAnswerIsACrash) {
 }
 
 TEST(DeclarationsTest, EachChangedAnswerOfAPortIsReported) {
-  const Declarations said{"a", "1", {"rates"}, 22, Rate::hz(250), ModuleSet().set(), {}};
+  const Declarations said{"a", "1", {"rates"}, {}, 22, Rate::hz(250), ModuleSet().set(), {}};
   EXPECT_EQ(change(said, said), "");
-  std::vector<Declarations> others(7, said);
+  std::vector<Declarations> others(8, said);
   others[0].name = "b";
   others[1].version = "2";
   others[2].unsupported_groups = {"rates", "tpa"};
@@ -315,6 +315,7 @@ TEST(DeclarationsTest, EachChangedAnswerOfAPortIsReported) {
   others[4].fraction_bits.reset();
   others[5].fixed_step = Rate::hz(500);
   others[6].modules = only(Module::mc_att_control);
+  others[7].lacks = *Lacks::parse(std::vector<std::string>{"sticks"});
   for (const Declarations& now : others) EXPECT_NE(change(said, now), "");
 }
 

@@ -157,10 +157,10 @@ TEST(RecordedOutputs, EachOutputIsNeededOnceWithAValueOfItsKind) {
   }
 }
 
-TEST(RecordedOutputs, AColumnThatIsListedAsNotRecordedIsNotRead) {
+TEST(RecordedOutputs, AColumnThatThePortLacksIsNotRead) {
   constexpr const char* flag = "out/vehicle_rates_setpoint.published";
   Manifest manifest;
-  manifest.not_recorded = channels_named(flag);
+  manifest.lacks.outputs = channels_named(flag);
   Table table = complete();
   column(table, flag).values = {0, 0, 0.5, 0, 0};
   Trace trace = inputs();

@@ -57,7 +57,7 @@ TEST(ParseHello, TakesAllThatAPortMaySay) {
   const auto hello = parse_hello(
       R"({"protocol":1,"name":"n","version":"2","profiles":["px4-v1.5.5"],"frames":"binary",)"
       R"("batch":true,"modules":["mixer"],"unsupported_groups":["tpa"],"arithmetic":"fixed:22",)"
-      R"("fixed_step":"1000/3","files":["law.py","../vector.py"]})");
+      R"("fixed_step":"1000/3","files":["law.py","../vector.py"],"lacks":["sticks"]})");
   ASSERT_TRUE(hello) << hello.error().to_string();
   EXPECT_EQ(hello->name, "n");
   EXPECT_EQ(hello->version, "2");
@@ -66,6 +66,7 @@ TEST(ParseHello, TakesAllThatAPortMaySay) {
   EXPECT_TRUE(hello->has_batch);
   EXPECT_EQ(hello->modules, only(Module::mc_att_control) | only(Module::mixer));
   EXPECT_THAT(hello->unsupported_groups, ElementsAre("tpa"));
+  EXPECT_THAT(hello->lacks.words, ElementsAre("sticks"));
   EXPECT_EQ(hello->fraction_bits, 22);
   EXPECT_EQ(hello->fixed_step->to_string(), "1000/3");
   EXPECT_THAT(hello->files, ElementsAre("law.py", "../vector.py"));

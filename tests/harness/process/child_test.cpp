@@ -229,5 +229,24 @@ TEST(Child, IsMovedWithItsProcess) {
   EXPECT_THAT(said(two), Optional(std::string("one")));
 }
 
+TEST(LastWords, AreThoseOfAPanicOrTheLastLine) {
+  EXPECT_EQ(last_words_in(""), "");
+  EXPECT_EQ(last_words_in("one\ntwo \n\n"), "two");
+  EXPECT_EQ(last_words_in("started\n"
+                          "thread 'main' panicked at src/law.rs:12:9:\n"
+                          "index out of bounds: the len is 3 but the index is 3\n"
+                          "note: run with `RUST_BACKTRACE=1` environment variable to display\n"),
+            "thread 'main' panicked at src/law.rs:12:9: index out of bounds: the len is 3 but the "
+            "index is 3");
+  EXPECT_EQ(last_words_in("thread 'main' panicked at 'no gain', src/law.rs:3:5\nnote: run with\n"),
+            "thread 'main' panicked at 'no gain', src/law.rs:3:5");
+  EXPECT_EQ(last_words_in("panic: no gain\n\ngoroutine 1 [running]:\nmain.main()\n"),
+            "panic: no gain");
+  EXPECT_EQ(last_words_in("thread 'main' panicked at src/law.rs:12:9:"),
+            "thread 'main' panicked at src/law.rs:12:9:");
+  const std::string long_line = std::string(500, 'a') + std::string(400, 'b');
+  EXPECT_EQ(last_words_in(long_line), std::string(400, 'b'));
+}
+
 }  // namespace
 }  // namespace attest

@@ -1,0 +1,50 @@
+// What a port declares that it has not: features of the law, outputs, and parameters that are
+// constants in it. What it declares is not judged, and the rest is.
+//
+//     sticks                          a feature: `attest list --features`
+//     rate_ctrl_status                an output topic
+//     actuator_controls_0.control[7]  an output; `*` stands for any text
+//     MC_YAW_FF=0.5                   a parameter that is a constant, and its value
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "controller/attest_unit.h"
+#include "harness/core/result.hpp"
+#include "harness/port/features.hpp"
+#include "harness/trace/channels.hpp"
+
+namespace attest {
+
+// A parameter that is a constant in the port.
+struct ConstantParameter {
+  std::string name;
+  float value;
+
+  // The result of set_parameter(). The port is not asked.
+  int answer_to(float wanted) const { return wanted == value ? ATTEST_OK : ATTEST_UNSUPPORTED; }
+};
+
+struct Lacks {
+  std::vector<std::string> words;  // as declared
+  FeatureSet features;
+  ChannelSet outputs;
+  std::vector<ConstantParameter> constants;
+
+  bool any() const { return !words.empty(); }
+  const ConstantParameter* constant(std::string_view parameter) const;  // null: it is none
+
+  // Errors: a word that is no feature, output or parameter; a parameter that has two values.
+  static Result<Lacks> parse(std::span<const std::string> words);
+};
+
+// The output topics of the module of which the set has the flag `published`.
+std::vector<std::string_view> topics_in(const ChannelSet& outputs, Module module);
+
+// Parses "NAME=VALUE". Errors: other text; a value that is no finite number.
+Result<ParameterChange> parse_parameter(const std::string& text);
+
+}  // namespace attest
