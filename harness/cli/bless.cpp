@@ -140,32 +140,30 @@ Result<BlessingOptions> blessing_of(const BlessOptions& options,
 }
 
 // Errors: cases that are not selected have goldens of another port.
-Result<void> check_other_goldens(const std::vector<SelectedCase>& selected,
-                                 const std::set<std::string>& all, const std::string& port,
-                                 const Goldens& goldens) {
-  std::set<std::string> others = all;
-  for (const SelectedCase& one : selected) others.erase(one.the_case.id());
-  for (const std::string& id : others) {
-    const std::size_t slash = id.find('/');
-    const auto& origins = goldens.origins_of(id.substr(0, slash));
+Result<void> check_other_goldens(const std::vector<SelectedCase>& selected, GoldenKeys all,
+                                 const std::string& port, const Goldens& goldens) {
+  for (const SelectedCase& one : selected) all[one.the_case.profile].erase(key_of(one.the_case));
+  for (const auto& [profile, others] : all) {
+    const auto& origins = goldens.origins_of(profile);
     if (!origins) return tl::unexpected(origins.error());
-    const auto origin = origins->find(id.substr(slash + 1));
-    if (origin == origins->end() || origin->second.reference == port) continue;
-    return fail_at(goldens.root().string(),
-                   fmt::format("the golden of {} is of {}, and a suite has one reference: bless "
-                               "all cases with this port",
-                               id, origin->second.reference));
+    for (const auto& [key, origin] : *origins) {
+      if (!others.contains(key) || origin.reference == port) continue;
+      return fail_at(goldens.root().string(),
+                     fmt::format("the golden of {} is of {}, and a suite has one reference: bless "
+                                 "all cases with this port",
+                                 id_of(profile, key), origin.reference));
+    }
   }
   return {};
 }
 
 // Errors: a malformed case file.
-Result<std::set<std::string>> ids_of_all_cases(const SuiteFolder& suite) {
+Result<GoldenKeys> keys_of_all_cases(const SuiteFolder& suite) {
   const auto all = select_cases(suite.case_folders(), {});
   if (!all) return tl::unexpected(all.error());
-  std::set<std::string> ids;
-  for (const SelectedCase& one : *all) ids.insert(one.the_case.id());
-  return ids;
+  GoldenKeys keys;
+  for (const SelectedCase& one : *all) keys[one.the_case.profile].insert(key_of(one.the_case));
+  return keys;
 }
 
 Result<int> bless_selected(const BlessOptions& options, const Globals& globals) {
@@ -181,7 +179,7 @@ Result<int> bless_selected(const BlessOptions& options, const Globals& globals) 
   if (!lock) return tl::unexpected(lock.error());
   auto blessing = blessing_of(options, *cases, *suite);
   if (!blessing) return tl::unexpected(blessing.error());
-  auto all = ids_of_all_cases(*suite);
+  auto all = keys_of_all_cases(*suite);
   if (!all) return tl::unexpected(all.error());
   blessing->all_cases = *std::move(all);
   const Goldens goldens(suite->golden());

@@ -60,21 +60,21 @@ void examine_cases(const SuiteFolder& suite, Examination& examination) {
   if (!cases) return examination.bad("cases", cases.error().to_string());
   std::size_t vectors = 0;
   std::vector<std::string> stale;
-  std::set<std::string> ids, profiles;
+  GoldenKeys keys_of_cases;
   const Goldens goldens(suite.golden());
   for (const auto& [the_case, configurations] : *cases) {
     vectors += configurations.size();
-    ids.insert(the_case.id());
-    profiles.insert(the_case.profile);
+    keys_of_cases[the_case.profile].insert(key_of(the_case));
     if (const auto golden = goldens.open(the_case); !golden) {
       stale.push_back(golden.error().to_string());
     }
   }
   examination.good("cases", fmt::format("{} cases, {} vectors, in {}", cases->size(), vectors,
                                         suite.cases().string()));
-  for (const std::string& profile : profiles) {
-    for (const std::string& key : goldens.without_case(profile, ids)) {
-      stale.push_back(fmt::format("{}/{} has no case; `attest bless` removes it", profile, key));
+  for (const auto& [profile, keys] : keys_of_cases) {
+    for (const std::string& key : goldens.without_case(profile, keys)) {
+      stale.push_back(
+          fmt::format("{} has no case; `attest bless` removes it", id_of(profile, key)));
     }
   }
   if (stale.empty()) return examination.good("golden", "one for each case, all current");

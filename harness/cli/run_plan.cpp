@@ -18,6 +18,7 @@
 #include "harness/core/file.hpp"
 #include "harness/core/interrupt.hpp"
 #include "harness/core/version.hpp"
+#include "harness/golden/golden.hpp"
 #include "harness/host/manifest.hpp"
 #include "harness/port/port.hpp"
 #include "harness/port/profiles.hpp"
@@ -273,10 +274,12 @@ Result<ExpectedFailures> read_expected(const std::string& file, const SuiteFolde
 }  // namespace
 
 void name_files(const std::vector<SelectedCase>& cases, const SuiteFolder& suite, RunResult& run) {
+  const std::filesystem::path golden = path_from_here(suite.golden());
   for (const SelectedCase& selected : cases) {
-    run.case_files[selected.the_case.id()] = path_from_here(selected.the_case.file);
+    const std::string id = selected.the_case.id();
+    run.case_files[id] = path_from_here(selected.the_case.file);
+    run.golden_files[id] = golden_file(golden, key_of(selected.the_case)).string();
   }
-  run.golden_folder = path_from_here(suite.golden());
 }
 
 Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite) {

@@ -16,8 +16,8 @@ Result<void> remove_without_case(const std::vector<SelectedCase>& cases, const G
   std::set<std::string> profiles;
   for (const SelectedCase& selected : cases) profiles.insert(selected.the_case.profile);
   for (const std::string& profile : profiles) {
-    for (const std::string& key : goldens.without_case(profile, options.all_cases)) {
-      options.on_change(fmt::format("{}/{}: removed, because its case is gone", profile, key));
+    for (const std::string& key : goldens.without_case(profile, options.all_cases.at(profile))) {
+      options.on_change(fmt::format("{}: removed, because its case is gone", id_of(profile, key)));
       if (auto removed = pending.goldens.remove(profile, key); !removed) return removed;
     }
   }

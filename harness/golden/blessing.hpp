@@ -20,7 +20,7 @@ struct BlessingOptions {
   std::filesystem::path models;          // folder of the suite
   Making making;                         // kept in the provenance
   std::optional<HostOptions> port = {};  // the reference of the suite; empty: attest's own
-  std::set<std::string> all_cases = {};  // ids; goldens of other cases are removed
+  GoldenKeys all_cases = {};             // goldens of other cases are removed
   // Called with one line about each case whose golden changes.
   std::function<void(const std::string& line)> on_change = [](const std::string&) {};
   std::function<bool()> stop = [] { return false; };  // returns true: end with an error
@@ -34,8 +34,8 @@ struct PendingGoldens {
 
 // Makes the golden of each case at all its rates. In the profiles of these cases, goldens without a
 // case are removed. `goldens`: the old ones; it outlives the result.
-// REQUIRES: the caller holds the GoldenLock of their folder. Errors: those of Reference::of_port(),
-// make_golden(), change_of_golden() and NewGoldens::add().
+// REQUIRES: the caller holds the GoldenLock of their folder; `all_cases` has the cases. Errors:
+// those of Reference::of_port(), make_golden(), change_of_golden() and NewGoldens::add().
 Result<PendingGoldens> write_new_goldens(const std::vector<SelectedCase>& cases,
                                          const Goldens& goldens, const BlessingOptions& options);
 

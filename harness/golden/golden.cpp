@@ -1,11 +1,13 @@
 #include "harness/golden/golden.hpp"
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/golden/shared_golden.hpp"
 #include "harness/host/manifest.hpp"
 
 namespace attest {
@@ -17,27 +19,40 @@ std::string how_to_bless(const std::string& case_id) {
   return fmt::format("`attest bless --filter '{}' --reason \"...\"` makes it", case_id);
 }
 
-// The text of a golden: that at its place, or the new one that a killed bless left next to it.
-// Errors: none of them has the hash of `origin`.
-Result<std::string> blessed_text(const fs::path& file, const GoldenOrigin& origin) {
+// The text of a golden: in the file at its place, or in the new one that a killed bless left next
+// to it. Errors: none of them has the hash of `origin`.
+Result<std::string> blessed_text(const fs::path& file, const std::string& profile,
+                                 const GoldenOrigin& origin) {
   // The place is read again at the end, because a bless at the same time moves the new golden
   // there.
   for (const fs::path& place : {file, new_golden_file(file), file}) {
-    auto text = read_file(place);
-    if (text && sha256(*text) == origin.sha256) return text;
+    const auto text = read_file(place);
+    if (!text) continue;
+    std::string golden = golden_of_profile(*text, profile);
+    if (sha256(golden) == origin.sha256) return golden;
   }
   std::error_code ignored;
   return fail_at(file.string(),
                  fmt::format("{}; restore it from version control, or bless it anew",
                              fs::exists(file, ignored)
-                                 ? "is not the file that was blessed (its SHA-256 is another than "
-                                   "in the provenance.toml of its profile)"
+                                 ? fmt::format("is not the file that was blessed (the SHA-256 of "
+                                               "its traces of {} is another than in the "
+                                               "provenance.toml of this profile)",
+                                               profile)
                                  : "is missing"));
 }
 
 }  // namespace
 
-std::string key_of(const Case& the_case) { return the_case.group + "/" + the_case.name; }
+std::string key_of(const Case& the_case) {
+  const bool has_folder = !the_case.profiles.empty();
+  const std::string& folder = has_folder ? the_case.profiles.front() : the_case.profile;
+  return fmt::format("{}/{}/{}", folder, the_case.group, the_case.name);
+}
+
+std::string id_of(const std::string& profile, const std::string& key) {
+  return profile + key.substr(std::min(key.find('/'), key.size()));
+}
 
 std::map<std::string, std::string> hashes_of(const Vehicle& vehicle) {
   const auto files = vehicle.files();
@@ -45,8 +60,8 @@ std::map<std::string, std::string> hashes_of(const Vehicle& vehicle) {
           {files[1].filename().string(), vehicle.mjcf_sha256}};
 }
 
-fs::path golden_file(const fs::path& golden_root, const Case& the_case) {
-  return golden_root / the_case.profile / the_case.group / (the_case.name + ".csv");
+fs::path golden_file(const fs::path& golden_root, const std::string& key) {
+  return golden_root / (key + ".csv");
 }
 
 fs::path new_golden_file(const fs::path& golden) { return fs::path(golden).concat(".new"); }
@@ -102,8 +117,9 @@ Result<void> Golden::check_inputs(const Trace& inputs,
 Result<Golden> Goldens::open(const Case& the_case) const {
   const auto& origins = origins_of(the_case.profile);
   if (!origins) return tl::unexpected(origins.error());
-  const fs::path file = golden_file(root_, the_case);
-  const auto origin = origins->find(key_of(the_case));
+  const std::string key = key_of(the_case);
+  const fs::path file = golden_file(root_, key);
+  const auto origin = origins->find(key);
   if (origin == origins->end()) {
     return fail_at(file.string(),
                    fmt::format("no golden for {}; {}", the_case.id(), how_to_bless(the_case.id())));
@@ -113,10 +129,11 @@ Result<Golden> Goldens::open(const Case& the_case) const {
                    fmt::format("the golden is stale: {} has changed since it was blessed; {} anew",
                                the_case.file.string(), how_to_bless(the_case.id())));
   }
-  const auto text = blessed_text(file, origin->second);
+  const auto text = blessed_text(file, the_case.profile, origin->second);
   if (!text) return tl::unexpected(text.error());
   auto traces = parse_golden(*text, file, the_case.module);
-  if (!traces) return tl::unexpected(traces.error());
+  // Without the line, which is not that of the file: other profiles may have lines before it.
+  if (!traces) return fail_at(file.string(), traces.error().message);
   return Golden(file, origin->second, *std::move(traces));
 }
 
@@ -140,12 +157,12 @@ std::string Goldens::reference() const {
 }
 
 std::vector<std::string> Goldens::without_case(const std::string& profile,
-                                               const std::set<std::string>& ids) const {
+                                               const std::set<std::string>& keys_of_cases) const {
   std::vector<std::string> keys;
   const auto& origins = origins_of(profile);
   if (!origins) return keys;
   for (const auto& [key, origin] : *origins) {
-    if (!ids.contains(profile + "/" + key)) keys.push_back(key);
+    if (!keys_of_cases.contains(key)) keys.push_back(key);
   }
   return keys;
 }

@@ -1,5 +1,6 @@
-// The goldens of a suite: golden/<profile>/<group>/<name>.csv has the expected outputs of a case
-// (golden_file.hpp), and golden/<profile>/provenance.toml their origins (golden_origins.hpp).
+// The goldens of a suite: golden/<folder>/<group>/<name>.csv has the expected outputs of the cases
+// of a case file (shared_golden.hpp), and golden/<profile>/provenance.toml the origins of those of
+// a profile (golden_origins.hpp).
 // The golden of a flight, or of a long open-loop case, keeps only some ticks (keyframes.hpp).
 #pragma once
 
@@ -68,9 +69,9 @@ class Goldens {
   // all profiles; those that cannot be read are left out, because a run of their cases reports it.
   std::string reference() const;
 
-  // The keys in the origins of a profile that have no case: `ids` are those of all cases.
+  // The keys in the origins of a profile that have no case: `keys` are those of its cases.
   std::vector<std::string> without_case(const std::string& profile,
-                                        const std::set<std::string>& ids) const;
+                                        const std::set<std::string>& keys) const;
 
   const std::filesystem::path& root() const { return root_; }
 
@@ -82,13 +83,17 @@ class Goldens {
   mutable std::map<std::string, Result<GoldenOrigins>> origins_;  // by profile
 };
 
-// The key of a case in GoldenOrigins.
+// The key of a case in GoldenOrigins: the path of its golden without `.csv`, which is that of its
+// file without `.toml`: "px4-v1.16.0/attitude/roll" for each profile of the case.
 std::string key_of(const Case& the_case);
+using GoldenKeys = std::map<std::string, std::set<std::string>>;  // profile -> keys of its cases
+// Case::id() of the case with this key.
+std::string id_of(const std::string& profile, const std::string& key);
 
 // Name of each file from which the vehicle was loaded -> SHA-256 of the bytes that were loaded.
 std::map<std::string, std::string> hashes_of(const Vehicle& vehicle);
 
-std::filesystem::path golden_file(const std::filesystem::path& golden_root, const Case& the_case);
+std::filesystem::path golden_file(const std::filesystem::path& golden_root, const std::string& key);
 
 // The place of a new golden until it is in its own. If bless is killed after it has written the
 // origins, a reader finds the golden here, and the next bless moves it to its place.

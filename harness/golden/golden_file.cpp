@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "harness/core/file.hpp"
 #include "harness/trace/csv_rows.hpp"
 #include "harness/trace/csv_text.hpp"
 
@@ -212,14 +211,13 @@ class Reader {
 
 }  // namespace
 
-Result<void> write_golden(const std::filesystem::path& path, std::vector<GoldenTrace> traces) {
-  auto file = AtomicFile::open(path, AtomicFile::Special::replaced);
-  if (!file) return tl::unexpected(file.error());
-  CsvText text(*file);
-  write_header(traces.front(), text);
-  for (const GoldenTrace& trace : with_shared_traces(std::move(traces))) write_rows(trace, text);
-  if (auto written = text.finish(); !written) return written;
-  return file->commit();
+std::string golden_text(std::vector<GoldenTrace> traces) {
+  std::string text;
+  CsvText csv(text);
+  write_header(traces.front(), csv);
+  for (const GoldenTrace& trace : with_shared_traces(std::move(traces))) write_rows(trace, csv);
+  static_cast<void>(csv.finish());  // a string cannot fail
+  return text;
 }
 
 Result<std::vector<GoldenTrace>> parse_golden(std::string_view text,

@@ -1,4 +1,5 @@
-// The file of a golden, as CSV: the expected outputs of a case at all its rates.
+// The text of a golden, as CSV: the expected outputs of a case of one profile, at all its rates.
+// A file has the goldens of several profiles (shared_golden.hpp).
 //
 //     configurations,tick,out/vehicle_rates_setpoint.roll,out/vehicle_rates_setpoint.published
 //     50hz 100hz,0,0.38800925,1
@@ -33,13 +34,13 @@ struct GoldenTrace {
   std::map<std::string, double> metrics = {};
 };
 
-// Writes the file, and commits it. Equal traces become one. REQUIRES: all traces have the same
-// channels and metrics; all or none have a horizon. Errors: the file cannot be written.
-Result<void> write_golden(const std::filesystem::path& path, std::vector<GoldenTrace> traces);
+// Equal traces become one. REQUIRES: all traces have the same channels and metrics; all or none
+// have a horizon.
+std::string golden_text(std::vector<GoldenTrace> traces);
 
-// The traces of a file whose content is `text`. Errors, each as file:line:column with what to do: a
-// column that is no output of `module`, a cell that is not a value of its column, a first row
-// without configurations, a configuration that has two traces, ticks that do not increase.
+// `path` is for messages. Errors, each as path:line:column of `text` with what to do: a column that
+// is no output of `module`, a cell that is not a value of its column, a first row without
+// configurations, a configuration that has two traces, ticks that do not increase.
 Result<std::vector<GoldenTrace>> parse_golden(std::string_view text,
                                               const std::filesystem::path& path, Module module);
 

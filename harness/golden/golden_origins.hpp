@@ -12,7 +12,7 @@
 namespace attest {
 
 struct GoldenOrigin {
-  std::string sha256;       // of the golden's file
+  std::string sha256;       // of the golden's text
   std::string case_sha256;  // Case::sha256
   std::string reference;    // whose outputs it has: "attest 0.1.0"
   std::string compiler;     // "gcc 12.2.0"
@@ -25,7 +25,7 @@ struct GoldenOrigin {
   bool operator==(const GoldenOrigin&) const = default;
 };
 
-using GoldenOrigins = std::map<std::string, GoldenOrigin>;  // "group/name" -> origin
+using GoldenOrigins = std::map<std::string, GoldenOrigin>;  // by key_of() of the case
 
 std::filesystem::path origins_file(const std::filesystem::path& golden_root,
                                    const std::string& profile);

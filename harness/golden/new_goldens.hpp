@@ -3,11 +3,13 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "harness/core/result.hpp"
 #include "harness/golden/golden.hpp"
+#include "harness/golden/shared_golden.hpp"
 
 namespace attest {
 
@@ -36,7 +38,9 @@ class NewGoldens {
   NewGoldens& operator=(NewGoldens&&) = delete;
   ~NewGoldens();  // removes what was not put in place
 
-  // Errors: the origins of the old goldens were edited; a file cannot be read or written.
+  // The goldens of other profiles in the same file stay. Those with other columns are removed,
+  // because they are stale. Errors: the origins of the old goldens were edited; a file cannot be
+  // written; the name of the profile cannot be in the file.
   Result<void> add(const Case& the_case, const MadeGolden& made, const Making& making);
 
   // Removes a golden without a case, when the others are put in place. Errors: as for add().
@@ -48,23 +52,28 @@ class NewGoldens {
   // have changed since they were read.
   Result<void> put_in_place();
 
-  // The number of goldens that change.
-  std::size_t size() const { return files_.size() + removed_.size(); }
+  // The goldens of a file that are in force after put_in_place(), as far as they are added. Errors:
+  // the origins of one of them were edited.
+  Result<GoldensByProfile> goldens_of(const std::string& key);
+
+  // The number of goldens that change, each of one profile.
+  std::size_t size() const { return changes_; }
 
  private:
   Result<GoldenOrigins*> origins_of(const std::string& profile);
 
   const Goldens& goldens_;
   std::map<std::string, GoldenOrigins> origins_;  // by profile, with the old ones
-  std::vector<std::filesystem::path> files_;      // places of the new goldens
-  std::vector<std::filesystem::path> removed_;
+  std::set<std::filesystem::path> files_;         // places of files with new goldens
+  std::set<std::filesystem::path> removed_;       // files without goldens
+  std::size_t changes_ = 0;
   bool origins_written_ = false;  // of a profile; the new files then stay
 };
 
-// Ends what a killed bless has begun. Moves a new golden to its place if the origins have its hash.
-// Otherwise the old golden is in force, and the new one is removed; without an old one it stays,
-// and the next bless of its case replaces it. Errors: the origins cannot be read; a file cannot be
-// moved.
+// Ends what a killed bless has begun. Moves the goldens of a new file whose hashes the origins have
+// to the file at its place, and removes the new one. If no golden is in force, neither old nor new,
+// and only the new file is there, it stays, and the next bless of its case replaces it. Errors: the
+// origins cannot be read; a file cannot be written.
 Result<void> finish_killed_bless(const std::filesystem::path& golden_root);
 
 }  // namespace attest

@@ -214,9 +214,10 @@ std::string failure_text(const VectorResult& result, const RunResult& run) {
   const std::string id = result.case_id();
   if (const auto file = run.case_files.find(id); file != run.case_files.end())
     out += fmt::format("  case:      {}\n", one_line(file->second));
-  if (result.first && run.command == "run" && run.timing.empty()) {
-    out +=
-        fmt::format("  golden:    {}\n", one_line(fmt::format("{}/{}.csv", run.golden_folder, id)));
+  const auto golden = run.golden_files.find(id);
+  if (golden != run.golden_files.end() && result.first && run.command == "run" &&
+      run.timing.empty()) {
+    out += fmt::format("  golden:    {}\n", one_line(golden->second));
   }
   out += "  reproduce: " + reproduce_command(result, run);
   if (result.plant_configuration && run.timing.empty())

@@ -31,7 +31,7 @@ bool may_be_ignored(std::string_view name, const CsvRows& rows, const std::strin
 }  // namespace
 
 Result<void> refuse_golden(const CsvRows& rows) {
-  if (rows.header().front() != "configurations") return {};
+  if (rows.header().front() != "profiles") return {};
   return fail_at(rows.file(),
                  "is a golden, which has no inputs, and no trace; `attest vectors DIR` writes the "
                  "inputs, and `attest run` compares a port with the golden",

@@ -43,7 +43,7 @@ void CsvText::append(std::string_view text) {
 }
 
 void CsvText::flush() {
-  if (status_) status_ = file_.write(std::string_view(block_.data(), used_));
+  if (status_) status_ = write_(std::string_view(block_.data(), used_));
   used_ = 0;
 }
 

@@ -1,10 +1,12 @@
-// Writes CSV cell by cell into an AtomicFile, in blocks.
+// Writes CSV cell by cell into an AtomicFile or a string, in blocks.
 #pragma once
 
 #include <array>
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <string>
 #include <string_view>
 
 #include "harness/core/file.hpp"
@@ -15,8 +17,14 @@ namespace attest {
 
 class CsvText {
  public:
-  // REQUIRES: `file` outlives this.
-  explicit CsvText(AtomicFile& file) : file_(file) {}
+  // REQUIRES: `file` and `text` outlive this.
+  explicit CsvText(AtomicFile& file)
+      : write_([&file](std::string_view bytes) { return file.write(bytes); }) {}
+  explicit CsvText(std::string& text)
+      : write_([&text](std::string_view bytes) {
+          text += bytes;
+          return Result<void>();
+        }) {}
 
   // A header cell. REQUIRES: no comma or line end in it.
   void name(std::string_view text);
@@ -43,7 +51,7 @@ class CsvText {
   void append(std::string_view text);
   void flush();
 
-  AtomicFile& file_;
+  std::function<Result<void>(std::string_view)> write_;
   Result<void> status_;
   bool is_first_in_row_ = true;
   std::size_t used_ = 0;

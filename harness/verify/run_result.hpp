@@ -47,8 +47,8 @@ struct RunResult {
   std::map<std::string, std::map<LoopRate, std::size_t>> suite;
   std::string suite_folder;  // as given with --suite; empty: not given
   // For people and services that open the files: paths from the folder where attest was started.
-  std::map<std::string, std::string> case_files;  // "profile/group/name" -> the case file
-  std::string golden_folder;
+  std::map<std::string, std::string> case_files;    // "profile/group/name" -> the case file
+  std::map<std::string, std::string> golden_files;  // the same -> the file of its golden
   std::string cases_version = "unversioned", golden_version = "unversioned";  // of the suite
   std::string suite_reference;          // the port that made the goldens; empty: attest's reference
   std::string suite_sha256;             // of the suite's content

@@ -3,7 +3,13 @@ load common
 golden=suite/golden/px4-v1.5.5/attitude/roll.csv
 provenance=suite/golden/px4-v1.5.5/provenance.toml
 
-@test "bless makes one file for each case, and a provenance for each profile" {
+# sha256_of_profile PROFILE: of the golden of this profile, as golden/README.md says.
+sha256_of_profile() {
+  awk -F, -v profile="$1" 'NR == 1 { keep = 1 } NR > 1 && $1 != "" { keep = index($1, profile) }
+    keep { sub(/^[^,]*,/, ""); print }' $golden | sha256sum | cut -d' ' -f1
+}
+
+@test "bless makes one file for each case file, and a provenance for each profile" {
   make_suite
   run "$ATTEST" --suite suite bless --yes --reason "first golden"
   [ "$status" -eq 0 ]
@@ -13,7 +19,7 @@ provenance=suite/golden/px4-v1.5.5/provenance.toml
   grep -q "first golden" $provenance
   run "$ATTEST" --suite suite run --level exact
   [ "$status" -eq 0 ]
-  grep -q "^sha256 = '$(sha256sum <$golden | cut -d' ' -f1)'" $provenance
+  grep -q "^sha256 = '$(sha256_of_profile px4-v1.5.5)'" $provenance
 }
 
 @test "nothing is blessed without a reason, nor unasked" {
@@ -112,10 +118,16 @@ provenance=suite/golden/px4-v1.5.5/provenance.toml
   has "2 unchanged"
 }
 
-@test "each profile of a case file has a golden of its own" {
+@test "the profiles of a case file share a golden" {
   make_suite
   sed -i 's/profiles = .*/since = "px4-v1.3.4"/' suite/cases/*/attitude/roll.toml
   "$ATTEST" --suite suite bless --yes --reason "first" >/dev/null
+  [ "$(cd suite/golden && find px4-* -type f | sort | xargs)" = \
+    "px4-v1.3.4/provenance.toml px4-v1.5.5/attitude/roll.csv px4-v1.5.5/provenance.toml" ]
+  grep -q "^px4-v1.3.4 px4-v1.5.5,50hz" $golden
+  for profile in px4-v1.3.4 px4-v1.5.5; do
+    grep -q "^sha256 = '$(sha256_of_profile $profile)'" suite/golden/$profile/provenance.toml
+  done
   run "$ATTEST" --suite suite run --level exact
   [ "$status" -eq 0 ]
   has "22 of 22"
@@ -128,6 +140,23 @@ provenance=suite/golden/px4-v1.5.5/provenance.toml
   run "$ATTEST" --suite suite run --level exact --profile px4-v1.5.5
   [ "$status" -eq 2 ]
   has "stale"
+  # The golden of the other profile stays in the file.
+  sed -i 's/to = 25/to = 20/' suite/cases/px4-v1.5.5/attitude/roll.toml
+  run "$ATTEST" --suite suite run --level exact --profile px4-v1.5.5
+  [ "$status" -eq 0 ]
+  # When the case is no longer of a profile, the golden of that profile goes.
+  sed -i 's/^since = .*/profiles = ["px4-v1.5.5"]/' suite/cases/px4-v1.5.5/attitude/roll.toml
+  cp -r suite/cases/px4-v1.5.5 suite/cases/px4-v1.3.4
+  sed -i 's/px4-v1.5.5/px4-v1.3.4/' suite/cases/px4-v1.3.4/attitude/roll.toml
+  run "$ATTEST" --suite suite bless --yes --reason "two files"
+  [ "$status" -eq 0 ]
+  has "px4-v1.3.4/attitude/roll: new"
+  has "px4-v1.3.4/attitude/roll: removed, because its case is gone"
+  has "blessed 2"
+  ! grep -q px4-v1.3.4 $golden
+  run "$ATTEST" --suite suite run --level exact
+  [ "$status" -eq 0 ]
+  has "22 of 22"
 }
 
 # A killed bless has written the provenance, and no golden is in its place yet.

@@ -77,21 +77,27 @@ nothing_is_left() {
   return 1
 }
 
-# accept_edit GOLDEN: updates the provenance of its profile, as if attest had written the golden.
+# accept_edit GOLDEN: updates the provenance of its profiles, as if attest had written the golden.
 accept_edit() {
   python3 - "$1" <<'SEAL'
 import hashlib, pathlib, re, sys
 golden = pathlib.Path(sys.argv[1])
-path = golden.parent.parent / "provenance.toml"
+root = golden.parents[2]
+header, *rows = [line.partition(",") for line in golden.open()]
+goldens, profiles = {}, []
+for cell, _, rest in rows:
+    profiles = cell.split() or profiles
+    for profile in profiles:
+        goldens[profile] = goldens.get(profile, header[2]) + rest
 prefix = "# SHA-256 of the lines above: "
-text = path.read_text().split(prefix)[0]
-entry = f"['{golden.parent.name}/{golden.stem}']"
-begin = text.index(entry)
-key = re.compile(r"^sha256 = .*$", re.MULTILINE)
-place = key.search(text, begin)
-hash_of_golden = hashlib.sha256(golden.read_bytes()).hexdigest()
-text = text[: place.start()] + f"sha256 = '{hash_of_golden}'" + text[place.end() :]
-path.write_text(text + prefix + hashlib.sha256(text.encode()).hexdigest() + "\n")
+for profile, golden_of_profile in goldens.items():
+    path = root / profile / "provenance.toml"
+    text = path.read_text().split(prefix)[0]
+    begin = text.index(f"['{golden.relative_to(root).with_suffix('')}']")
+    place = re.compile(r"^sha256 = .*$", re.MULTILINE).search(text, begin)
+    hash_of_golden = hashlib.sha256(golden_of_profile.encode()).hexdigest()
+    text = text[: place.start()] + f"sha256 = '{hash_of_golden}'" + text[place.end() :]
+    path.write_text(text + prefix + hashlib.sha256(text.encode()).hexdigest() + "\n")
 SEAL
 }
 

@@ -223,7 +223,7 @@ MC_ROLLRATE_P = -0.3' >>suite/cases/px4-v1.5.5/flight/tilt.toml
   golden=suite/golden/px4-v1.5.5/flight/tilt.csv
   cp $golden good.csv
   # A wrong roll rate at tick 3, and two wrong metrics.
-  for edit in '$2 == 3 { $5 = 9 }' 'NR == 2 { $NF = 99 }' 'NR == 2 { $NF = "nan" }'; do
+  for edit in '$3 == 3 { $6 = 9 }' 'NR == 2 { $NF = 99 }' 'NR == 2 { $NF = "nan" }'; do
     awk -F, -v OFS=, "$edit"' { print }' good.csv >$golden
     accept_edit $golden
     run "$ATTEST" --suite suite run
@@ -251,7 +251,7 @@ TIGHT
   python3 - <<'CHECK'
 import csv
 rows = csv.DictReader(open("suite/golden/px4-v1.5.5/flight/tilt.csv"))
-horizons = [float(row["horizon_s"]) for row in rows if row["configurations"]]
+horizons = [float(row["horizon_s"]) for row in rows if row["profiles"]]
 assert horizons and all(0 <= t < 0.2 for t in horizons), horizons
 CHECK
   run "$ATTEST" --suite suite run

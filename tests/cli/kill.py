@@ -85,6 +85,24 @@ def files_of(folder):
     return found
 
 
+def goldens_in(suite):
+    """(path, profile) -> SHA-256 of the golden of each profile in each golden file of a suite."""
+    found = {}
+    for path in (suite / "golden").rglob("*.csv*"):
+        header, *rows = [line.partition(",") for line in path.open(encoding="utf-8")]
+        if header[0] != "profiles":
+            continue  # a recording
+        texts, profiles = {}, []
+        for cell, _, rest in rows:
+            profiles = cell.split() or profiles
+            for profile in profiles:
+                texts[profile] = texts.get(profile, header[2]) + rest
+        for profile, text in texts.items():
+            name = path.relative_to(suite).as_posix()
+            found[name, profile] = hashlib.sha256(text.encode()).hexdigest()
+    return found
+
+
 def marked(mark):
     """The command lines of the processes with that mark in their environment."""
     wanted, found = f"{MARK}={mark}".encode(), []
@@ -221,6 +239,7 @@ class Undisturbed(NamedTuple):
     duration_s: float
     suite: dict[str, str]
     out: dict[str, str]
+    goldens: dict[tuple[str, str], str]
 
 
 def undisturbed(tester, command):
@@ -231,32 +250,26 @@ def undisturbed(tester, command):
     duration = time.monotonic() - begin
     require(code in (0, 1), f"{command.name} ends with {code}: {output}")
     require(files_of(place.temporary) == {}, f"{command.name} leaves temporary files")
-    left = Undisturbed(duration, files_of(place.suite), files_of(place.out))
+    suite = place.suite
+    left = Undisturbed(duration, files_of(suite), files_of(place.out), goldens_in(suite))
     shutil.rmtree(place.folder)
     return left
 
 
-def of_golden(files):
-    """The files below golden/ but the recordings: name -> content."""
-    return {
-        name: content
-        for name, content in files.items()
-        if name.startswith("golden/") and not name.startswith("golden/recorded/")
-    }
-
-
-def check_goldens(before, whole, after):
-    """Each golden that the provenance names is there: in its place, or next to it as *.new."""
-    old, new, now = of_golden(before), of_golden(whole), of_golden(after)
-    for name in old:
-        if not name.endswith(".csv"):
-            require(now.get(name) in (old[name], new[name]), f"{name} is neither old nor new")
-            continue
-        provenance = f"golden/{name.split('/')[1]}/provenance.toml"
-        is_new = now[provenance] == new[provenance]
-        expected = new[name] if is_new else old[name]
-        found = (now.get(name), now.get(name + ".new"))
-        require(expected in found, f"{name} is not the golden that the provenance names")
+def check_goldens(tester, place, whole):
+    """Each golden that the provenance of its profile names is there: in the file at its place, or
+    in the new one next to it."""
+    old, now = goldens_in(tester.template), goldens_in(place.suite)
+    require(len(old) == 2 * len(NAMES), "each case has a golden of each profile")
+    for (name, profile), old_golden in old.items():
+        provenance = f"golden/{profile}/provenance.toml"
+        old_hash = files_of(tester.template)[provenance]
+        now_hash = files_of(place.suite)[provenance]
+        is_new = now_hash == whole.suite[provenance]
+        require(is_new or now_hash == old_hash, f"{provenance} is neither old nor new")
+        expected = whole.goldens[name, profile] if is_new else old_golden
+        found = (now.get((name, profile)), now.get((name + ".new", profile)))
+        require(expected in found, f"{name} has not the golden that {provenance} names")
 
 
 def check_partial(path):
@@ -303,7 +316,7 @@ def check_left(tester, place, command, before, whole, output, is_killed):
     if not is_killed:
         unfinished = [name for name in after if ".new" in name or name.endswith(".lock")]
         require(not unfinished, f"unfinished goldens are left: {unfinished}")
-    check_goldens(before, whole.suite, after)
+    check_goldens(tester, place, whole)
 
 
 def check_bless_again(tester, place, whole):

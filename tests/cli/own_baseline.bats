@@ -19,7 +19,7 @@ ours() { "$ATTEST" --suite ours "$@"; }
   provenance=ours/golden/px4-v1.5.5/provenance.toml
   grep -q "^reference = 'sign-flip .*SHA-256 [0-9a-f]\{64\})'" $provenance
   # The golden of a long case keeps every tick, because attest's own law cannot fill them in.
-  grep -q "^,4999," ours/golden/px4-v1.5.5/rates/long_run.csv
+  grep -q "^,,4999," ours/golden/px4-v1.5.5/rates/long_run.csv
 
   run ours run --port "lib:$PORTS/port_sign_flip.so" --profile px4-v1.5.5 --level exact \
     --json report.json
@@ -111,8 +111,8 @@ P
   run ours run --port "lib:$PORTS/port_sign_flip.so" "${selection[@]}" --level exact
   [ "$status" -eq 0 ]
   has "custom suite, reference sign-flip"
-  grep -q "^,11," ours/golden/px4-v1.5.5/rates/p_alone.csv # the case of ours has 12 ticks
-  ! grep -q "^,12," ours/golden/px4-v1.5.5/rates/p_alone.csv
+  grep -q "^,,11," ours/golden/px4-v1.5.5/rates/p_alone.csv # the case of ours has 12 ticks
+  ! grep -q "^,,12," ours/golden/px4-v1.5.5/rates/p_alone.csv
   [ -e ours/golden/px4-v1.5.5/rates/long_run.csv ] # a case of the base
   run ours run "${selection[@]}" --json ours/cases/px4-v1.5.5/rates/p_alone.toml
   [ "$status" -eq 2 ]

@@ -80,10 +80,10 @@ load common
 }
 
 @test "a golden is no trace, and the error says what to do" {
-  run "$ATTEST" replay "$SOURCE"/golden/px4-v1.3.4/attitude/yaw_error.csv
+  run "$ATTEST" replay "$SOURCE"/golden/px4-v1.5.5/attitude/yaw_error.csv
   [ "$status" -eq 2 ]
   has "yaw_error.csv:1:1: is a golden, which has no inputs, and no trace; \`attest vectors DIR\`"
-  run "$ATTEST" plot "$SOURCE"/golden/px4-v1.3.4/attitude/yaw_error.csv --list
+  run "$ATTEST" plot "$SOURCE"/golden/px4-v1.5.5/attitude/yaw_error.csv --list
   [ "$status" -eq 2 ]
   has "yaw_error.csv:1:1: is a golden"
 }

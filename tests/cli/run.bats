@@ -190,7 +190,7 @@ quick=(--group battery --group rates --rate 100,250,8000)
 @test "a reference with other bits than the golden: its values decide, and the report says so" {
   blessed_suite
   golden=suite/golden/px4-v1.5.5/attitude/roll.csv
-  awk -F, -v OFS=, 'NR == 3 { $4 = sprintf("%.9g", $4 + 2e-7) } 1' $golden >other_bits.csv
+  awk -F, -v OFS=, 'NR == 3 { $5 = sprintf("%.9g", $5 + 2e-7) } 1' $golden >other_bits.csv
   cp other_bits.csv $golden
   accept_edit $golden
   run "$ATTEST" --suite suite run --json report.json
@@ -203,7 +203,7 @@ quick=(--group battery --group rates --rate 100,250,8000)
   [ "$status" -eq 2 ]
   has "the reference has other bits on this machine than the golden"
   # Beyond the tolerances nobody can judge.
-  awk -F, -v OFS=, 'NR == 3 { $4 = 0.5 } 1' $golden >wrong.csv
+  awk -F, -v OFS=, 'NR == 3 { $5 = 0.5 } 1' $golden >wrong.csv
   cp wrong.csv $golden
   accept_edit $golden
   run "$ATTEST" --suite suite run
@@ -214,7 +214,7 @@ quick=(--group battery --group rates --rate 100,250,8000)
 @test "a golden that lacks an output is refused: nothing would be compared with it" {
   blessed_suite
   golden=suite/golden/px4-v1.5.5/attitude/roll.csv
-  cut -d, -f 1-5,7- $golden >cut.csv
+  cut -d, -f 1-6,8- $golden >cut.csv
   mv cut.csv $golden
   accept_edit $golden
   run "$ATTEST" --suite suite run
@@ -374,10 +374,11 @@ PATHS
   mkdir -p here/suite/{cases,golden} ours
   for profile in px4-v1.5.5 px4-v1.3.4; do
     mkdir -p here/suite/golden/$profile
-    cp -r "$SOURCE/golden/$profile/"{rates,provenance.toml} here/suite/golden/$profile/
+    cp "$SOURCE/golden/$profile/provenance.toml" here/suite/golden/$profile/
   done
   mkdir here/suite/cases/px4-v1.5.5
   cp -r "$SOURCE/cases/px4-v1.5.5/rates" here/suite/cases/px4-v1.5.5/
+  cp -r "$SOURCE/golden/px4-v1.5.5/rates" here/suite/golden/px4-v1.5.5/
   echo ../here/suite >ours/BASE
   cp -r here/suite/golden ours/
   failing=(--port "lib:$PORTS/port_sign_flip.so" --profile px4-v1.3.4 --group rates --rate 250

@@ -6,9 +6,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/core/file.hpp"
-#include "tests/harness/core/temporary_directory.hpp"
-
 namespace attest {
 namespace {
 
@@ -38,11 +35,6 @@ std::vector<float> rolls_of(const GoldenTrace& trace) {
 
 class GoldenFile : public testing::Test {
  protected:
-  std::string written(const std::vector<GoldenTrace>& traces) const {
-    const auto path = directory_.path() / "golden.csv";
-    EXPECT_TRUE(write_golden(path, traces));
-    return read_file(path).value_or("");
-  }
   static Result<std::vector<GoldenTrace>> parsed(const std::string& text) {
     return parse_golden(text, "golden.csv", Module::mc_att_control);
   }
@@ -51,17 +43,14 @@ class GoldenFile : public testing::Test {
     EXPECT_FALSE(traces);
     return traces ? "" : traces.error().to_string();
   }
-
- private:
-  TemporaryDirectory directory_;
 };
 
 constexpr const char* header = "configurations,tick,out/vehicle_rates_setpoint.roll\n";
 
 TEST_F(GoldenFile, AnEmptyCellHasTheValueAboveAndEqualTracesAreOne) {
   const std::string text =
-      written({a_trace("50hz", {1, 1, -0.0f}), a_trace("100hz", {2}),
-               a_trace("250hz", {1, 1, -0.0f}), a_trace("333hz", {1, 1, 0.0f})});
+      golden_text({a_trace("50hz", {1, 1, -0.0f}), a_trace("100hz", {2}),
+                   a_trace("250hz", {1, 1, -0.0f}), a_trace("333hz", {1, 1, 0.0f})});
   EXPECT_EQ(text,
             std::string(header) + "50hz 250hz,0,1\n,1,\n,2,-0\n100hz,0,2\n333hz,0,1\n,1,\n,2,0\n");
   const auto traces = parsed(text);
@@ -94,7 +83,7 @@ TEST_F(GoldenFile, ReadsBackTheBitsOfAnyValues) {
     }
     made.push_back(a_trace(name, rolls));
   }
-  const auto read = parsed(written(made));
+  const auto read = parsed(golden_text(made));
   ASSERT_TRUE(read) << read.error().to_string();
   ASSERT_EQ(read->size(), made.size());
   const std::size_t roll = made[0].outputs.present._Find_first();
@@ -117,7 +106,7 @@ TEST_F(GoldenFile, AFlightHasTimesAHorizonAndMetrics) {
   trace.metrics = {{"settles", std::numeric_limits<double>::infinity()}, {"sinks", 1.0 / 3}};
   GoldenTrace same = trace;
   same.configurations = {"250hz-iris-mujoco"};
-  const auto read = parsed(written({trace, same}));
+  const auto read = parsed(golden_text({trace, same}));
   ASSERT_TRUE(read) << read.error().to_string();
   ASSERT_EQ(read->size(), 2u) << "each flight has its own horizon";
   const GoldenTrace& first = read->front();

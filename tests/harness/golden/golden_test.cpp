@@ -1,15 +1,13 @@
-#include "harness/golden/golden.hpp"
+#include "tests/harness/golden/golden_test.hpp"
 
 #include <fstream>
-#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "harness/core/file.hpp"
 #include "harness/golden/golden_change.hpp"
-#include "tests/harness/casefile/case_files.hpp"
-#include "tests/harness/golden/blessed.hpp"
+#include "harness/golden/shared_golden.hpp"
 
 namespace attest {
 namespace {
@@ -20,44 +18,6 @@ using testing::UnorderedElementsAre;
 
 namespace fs = std::filesystem;
 
-RunConfiguration at(std::int64_t hertz) { return {Rate::hz(hertz), std::nullopt}; }
-
-constexpr const char* two_rates = "rates_hz = [100, 333]\nrates_why = \"two\"\n";
-constexpr const char* of_the_case = "px4-v1.5.5/tests/the_case.csv";
-constexpr const char* of_the_profile = "px4-v1.5.5/provenance.toml";
-
-class GoldenTest : public testing::Test {
- protected:
-  fs::path root() const { return directory_.path() / "golden"; }
-  fs::path file() const { return root() / of_the_case; }
-  fs::path origins() const { return root() / of_the_profile; }
-  Case a_case(const std::string& body = "") const { return case_of(two_rates + body); }
-  Case other_case() const {
-    Case other = a_case("level = \"exact\"\n");
-    other.name = "other_case";
-    return other;
-  }
-
-  Result<Golden> open(const Case& the_case) const { return Goldens(root()).open(the_case); }
-  std::string error_of_open(const Case& the_case) const {
-    const auto golden = open(the_case);
-    EXPECT_FALSE(golden);
-    return golden ? "" : golden.error().to_string();
-  }
-
-  // Every file below the root, relative to it.
-  std::set<std::string> files() const {
-    std::set<std::string> found;
-    for (const auto& entry : fs::recursive_directory_iterator(root())) {
-      if (!entry.is_directory()) found.insert(entry.path().lexically_relative(root()).string());
-    }
-    return found;
-  }
-
- private:
-  TemporaryDirectory directory_;
-};
-
 TEST_F(GoldenTest, IsAFileLikeItsCaseAndAnEntryOfItsProfile) {
   bless(root(), a_case());
   bless(root(), other_case());
@@ -67,7 +27,7 @@ TEST_F(GoldenTest, IsAFileLikeItsCaseAndAnEntryOfItsProfile) {
   ASSERT_TRUE(golden) << golden.error().to_string();
   EXPECT_EQ(golden->file(), file());
   EXPECT_EQ(golden->origin().case_sha256, a_case().sha256);
-  EXPECT_EQ(golden->origin().sha256, *sha256_of_file(file()));
+  EXPECT_EQ(golden->origin().sha256, sha256(golden_of_profile(*read_file(file()), "px4-v1.5.5")));
   EXPECT_EQ(golden->origin().reason, "a test");
   EXPECT_FALSE(golden->is_of_port());
   EXPECT_TRUE(open(other_case())) << "an entry stays when another one is blessed";
@@ -127,95 +87,6 @@ TEST_F(GoldenTest, ThatWasBlessedAnewDuringTheRunIsAnError) {
   EXPECT_THAT(anew.error().message, HasSubstr("changed during the run"));
 }
 
-TEST_F(GoldenTest, IsNotInPlaceBeforeItIsPutThere) {
-  {
-    const Goldens old(root());
-    NewGoldens goldens(old);
-    ASSERT_TRUE(goldens.add(a_case(), made_by_reference(a_case()), {"a test"}));
-    EXPECT_FALSE(fs::exists(file()));
-  }
-  EXPECT_THAT(files(), UnorderedElementsAre());
-  EXPECT_TRUE(fs::is_empty(root()));
-}
-
-TEST_F(GoldenTest, ReplacesTheOldOneAndItsRates) {
-  bless(root(), a_case());
-  const Case changed = case_of("rates_hz = [250]\nrates_why = \"one\"\n");
-  bless(root(), changed);
-  EXPECT_THAT(files(), UnorderedElementsAre(of_the_case, of_the_profile));
-  const auto golden = open(changed);
-  ASSERT_TRUE(golden);
-  EXPECT_TRUE(golden->trace(at(250)));
-  EXPECT_FALSE(golden->trace(at(100)));
-}
-
-// A killed bless leaves the state between two system calls.
-class KilledBless : public GoldenTest {
- protected:
-  void SetUp() override {
-    bless(root(), a_case());
-    old_ = *read_file(file());
-    old_origins_ = *read_file(origins());
-    bless(root(), changed_);
-    fs::rename(file(), new_golden_file(file()));
-    ASSERT_TRUE(write_file(file(), old_));
-  }
-
-  Case changed_ = a_case("[control_state]\nroll_rate = 0.5\n");
-  std::string old_, old_origins_;
-};
-
-TEST_F(KilledBless, AfterTheOriginsTheNewGoldenIsRead) {
-  EXPECT_TRUE(open(changed_));
-  ASSERT_TRUE(finish_killed_bless(root()));
-  EXPECT_THAT(files(), UnorderedElementsAre(of_the_case, of_the_profile));
-  EXPECT_TRUE(open(changed_));
-}
-
-TEST_F(KilledBless, BeforeTheOriginsTheOldGoldenIsRead) {
-  ASSERT_TRUE(write_file(origins(), old_origins_));
-  EXPECT_TRUE(open(a_case()));
-  ASSERT_TRUE(finish_killed_bless(root()));
-  EXPECT_THAT(files(), UnorderedElementsAre(of_the_case, of_the_profile));
-  EXPECT_TRUE(open(a_case()));
-  EXPECT_EQ(read_file(file()).value(), old_);
-}
-
-// What a person does with a provenance that has a merge conflict: restore it.
-TEST_F(KilledBless, WithoutReadableOriginsTheNewGoldenStays) {
-  const std::string good = *read_file(origins());
-  fs::remove(file());
-  std::ofstream(origins(), std::ios::app) << "<<<<<<< HEAD\n";
-  EXPECT_FALSE(finish_killed_bless(root()));
-  fs::remove(origins());
-  EXPECT_TRUE(finish_killed_bless(root()));
-  ASSERT_TRUE(write_file(origins(), good));
-  EXPECT_TRUE(open(changed_));
-}
-
-TEST_F(KilledBless, FilesOfOthersStay) {
-  fs::create_directories(root() / "recorded" / "mine");
-  for (const char* name : {"notes.new", "recorded/mine/trace.csv.new", "px4-v1.5.5/tests/a.new",
-                           "px4-v1.5.5/b.csv.new"}) {
-    ASSERT_TRUE(write_file(root() / name, "of a person"));
-    ASSERT_TRUE(finish_killed_bless(root()));
-    EXPECT_EQ(read_file(root() / name).value_or(""), "of a person") << name;
-  }
-}
-
-TEST_F(GoldenTest, OriginsThatChangedWhileBlessRanAreNotOverwritten) {
-  bless(root(), a_case());
-  const Goldens old(root());
-  NewGoldens goldens(old);
-  ASSERT_TRUE(goldens.add(a_case("[control_state]\nroll_rate = 0.5\n"), made_by_reference(a_case()),
-                          {"a test"}));
-  bless(root(), other_case());
-  const auto placed = goldens.put_in_place();
-  ASSERT_FALSE(placed);
-  EXPECT_THAT(placed.error().message, HasSubstr("was changed while the new goldens were made"));
-  EXPECT_TRUE(open(other_case()));
-}
-
 // A report names the reference, so it must be that which made the goldens.
 TEST_F(GoldenTest, TheReferenceIsThePortThatMadeThem) {
   bless(root(), a_case());
@@ -224,29 +95,6 @@ TEST_F(GoldenTest, TheReferenceIsThePortThatMadeThem) {
   made.inputs["100hz"] = "some";
   bless(root(), other_case(), made);
   EXPECT_EQ(Goldens(root()).reference(), Making::own_reference());
-}
-
-TEST_F(GoldenTest, WithoutACaseItIsRemovedWithItsEntry) {
-  bless(root(), a_case());
-  bless(root(), other_case());
-  const Goldens old(root());
-  EXPECT_THAT(old.without_case("px4-v1.5.5", {a_case().id()}),
-              testing::ElementsAre("tests/other_case"));
-  NewGoldens goldens(old);
-  ASSERT_TRUE(goldens.remove("px4-v1.5.5", "tests/other_case"));
-  EXPECT_TRUE(open(other_case())) << "it stays until the others are put in place";
-  ASSERT_TRUE(goldens.put_in_place());
-  EXPECT_THAT(files(), UnorderedElementsAre(of_the_case, of_the_profile));
-  EXPECT_FALSE(open(other_case()));
-  EXPECT_TRUE(open(a_case()));
-}
-
-TEST_F(GoldenTest, AFolderThatCannotBeMadeIsAnError) {
-  std::ofstream(root()) << "a file where the folder should be\n";
-  const Goldens old(root());
-  const auto added = NewGoldens(old).add(a_case(), made_by_reference(a_case()), {"a test"});
-  ASSERT_FALSE(added);
-  EXPECT_THAT(added.error().message, HasSubstr("cannot be made"));
 }
 
 TEST_F(GoldenTest, OfAPortItIsForTheInputsThatThePortHad) {

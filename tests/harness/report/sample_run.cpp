@@ -163,8 +163,8 @@ RunResult sample_run() {
   add_flights(run.results);
   for (const VectorResult& result : run.results) {
     run.case_files[result.case_id()] = "cases/" + result.case_id() + ".toml";
+    run.golden_files[result.case_id()] = "golden/" + result.case_id() + ".csv";
   }
-  run.golden_folder = "golden";
   run.selected = run.results.size() + 1;  // one has an error instead
   run.errors = {Error{"row 4 has 21 columns, expected 22",
                       "golden/px4-v1.5.5/mixed/take_off/250hz.csv", 4, 0},
@@ -187,10 +187,10 @@ RunResult passing_run() {
       run.results.push_back(passed("attitude", name, rate));
       const std::string id = run.results.back().case_id();
       run.case_files[id] = "cases/" + id + ".toml";
+      run.golden_files[id] = "golden/" + id + ".csv";
       ++run.suite["px4-v1.5.5/attitude"][rate];
     }
   }
-  run.golden_folder = "golden";
   run.selected = run.results.size();
   run.suite_sha256 = std::string(64, 'a');
   run.suite_is_released = true;

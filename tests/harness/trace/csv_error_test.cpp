@@ -221,7 +221,7 @@ TEST_F(CsvErrors, EmptyLineBetweenRows) {
 }
 
 TEST_F(CsvErrors, Golden) {
-  EXPECT_THAT(error_of("configurations,tick,out/vehicle_rates_setpoint.yaw\n50hz,0,1\n"),
+  EXPECT_THAT(error_of("profiles,configurations,tick,out/vehicle_rates_setpoint.yaw\np,50hz,0,1\n"),
               HasSubstr("a.csv:1:1: is a golden, which has no inputs, and no trace"));
 }
 
