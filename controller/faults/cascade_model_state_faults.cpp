@@ -16,6 +16,7 @@ using AttitudeLaw = QuaternionStages::Law;
 using StepLaw = AttitudeStepStages::Law;
 using ModelLaw = ModelStages::Law;
 using Decay = ModelStages::Decay;
+using P = CascadeParameters;
 
 // The attitude follows the setpoint itself. Only the rates of the model are used.
 void follow_setpoint(FaultyLaw& law) {
