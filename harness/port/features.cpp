@@ -30,6 +30,7 @@ constexpr std::array<FeatureInfo, feature_count> rows{{
     {"mode_changes", "a flag of vehicle_control_mode changes"},
     {"parameter_changes", "a parameter changes while the unit runs"},
     {"non_finite", "an input or parameter is NaN or infinite"},
+    {"instances", "a second instance exists in the process of the port, also after the first"},
 }};
 
 FeatureSet only(Feature feature) { return FeatureSet().set(static_cast<std::size_t>(feature)); }

@@ -36,8 +36,9 @@ enum class Feature : std::uint8_t {
   mode_changes,
   parameter_changes,
   non_finite,
+  instances,
 };
-inline constexpr auto feature_count = static_cast<std::size_t>(Feature::non_finite) + 1;
+inline constexpr auto feature_count = static_cast<std::size_t>(Feature::instances) + 1;
 using FeatureSet = std::bitset<feature_count>;  // by enumerator
 
 struct FeatureInfo {
@@ -49,8 +50,9 @@ std::span<const FeatureInfo, feature_count> features();
 std::optional<Feature> feature_named(std::string_view name);
 std::vector<std::string> names_of(const FeatureSet& set);
 
-// The features that the inputs and parameters of the trace use. A parameter that the trace does not
-// set has the default of the profile. REQUIRES: the trace has all inputs of its module.
+// The features that the inputs and parameters of the trace use; Feature::instances is none of them.
+// A parameter that the trace does not set has the default of the profile. REQUIRES: the trace has
+// all inputs of its module.
 FeatureSet features_of(const Trace& trace, std::string_view profile);
 
 }  // namespace attest

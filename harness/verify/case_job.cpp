@@ -55,19 +55,44 @@ void CaseJob::close() {
 Result<VectorResult> CaseJob::run(std::size_t task) {
   const Vector& vector = vectors_[task];
   auto result = judged(vector);
-  if (result && fails_a_run(result->verdict) && !judged_by_host_.empty()) {
+  if (result && fails_a_run(result->verdict) && !judged_by_host_.empty() && is_repeated(*result)) {
     result = repeated_alone(vector, *std::move(result));
   }
   if (!result) return result;
+  needs_new_process_ = must_start_again(task, *result);
+  judged_by_host_.push_back(result->id());
+  return result;
+}
+
+namespace {
+
+// The port answered all requests, with wrong outputs.
+bool has_wrong_outputs(const VectorResult& result) {
+  return (result.verdict == Verdict::fail || result.verdict == Verdict::non_finite) && result.first;
+}
+
+}  // namespace
+
+bool CaseJob::is_repeated(const VectorResult& failed) const {
+  constexpr int enough = 3;
+  const bool is_program = kind_of(options_.port).is_program;
+  return !(is_program && failed_alone_ >= enough && has_wrong_outputs(failed));
+}
+
+bool CaseJob::must_start_again(std::size_t task, const VectorResult& result) const {
+  if (host_->is_spent()) return true;
+  if (host_->declarations().lacks.features[static_cast<std::size_t>(Feature::instances)])
+    return true;
+  // An unsupported vector may have ended in a crash or a timeout.
+  if (!result.lacking.empty() && result.has_after_all.empty()) return true;
+  // What an instance with wrong outputs left behind is not known. But if a vector fails later, it
+  // is repeated in a new process.
+  if (!fails_a_run(result.verdict) || has_wrong_outputs(result)) return false;
   // After a timeout the host answers the other requests at once: the port is not started again for
   // this case.
   const bool is_last_of_case =
-      task + 1 < vectors_.size() && vectors_[task + 1].the_case != vector.the_case;
-  needs_new_process_ =
-      host_->is_spent() ||
-      (fails_a_run(result->verdict) && (result->verdict != Verdict::timeout || is_last_of_case));
-  judged_by_host_.push_back(result->id());
-  return result;
+      task + 1 < vectors_.size() && vectors_[task + 1].the_case != vectors_[task].the_case;
+  return result.verdict != Verdict::timeout || is_last_of_case;
 }
 
 Result<VectorResult> CaseJob::repeated_alone(const Vector& vector, VectorResult failed) {
@@ -75,7 +100,9 @@ Result<VectorResult> CaseJob::repeated_alone(const Vector& vector, VectorResult 
   if (failed.verdict == Verdict::timeout) return failed;
   if (auto started = start(); !started) return tl::unexpected(started.error());
   auto alone = judged(vector);
-  if (!alone || fails_a_run(alone->verdict)) return alone;
+  const bool fails_alone = !alone || fails_a_run(alone->verdict);
+  failed_alone_ = fails_alone ? failed_alone_ + 1 : 0;
+  if (fails_alone) return alone;
   failed.reason += fmt::format(
       "{}it passes alone, in a new process of the port: an earlier instance "
       "has left state behind",
@@ -112,8 +139,9 @@ namespace {
 
 using CasesOfJob = std::vector<SelectedCase>;
 
-// One launch of a process for four vectors instead of four (`ci/bench`, "suite at 250 Hz").
-constexpr std::size_t enough_vectors = 4;
+// One launch of a process for four vectors instead of four (`ci/bench`, "suite at 250 Hz"). A
+// program may need seconds to start, so its process serves more of them.
+constexpr std::size_t enough_vectors = 4, enough_of_program = 48;
 
 const std::optional<PlantConfiguration>& plant_of(const SelectedCase& selected) {
   return selected.configurations.front().plant_configuration;
@@ -135,18 +163,19 @@ std::vector<SelectedCase> split_by_plant(const std::vector<SelectedCase>& cases)
   return parts;
 }
 
-bool has_room_for(const SelectedCase& next, const CasesOfJob& job) {
+bool has_room_for(const SelectedCase& next, const CasesOfJob& job, bool is_program) {
   if (plant_of(next) || plant_of(job.front())) return false;
   const Case &first = job.front().the_case, &one = next.the_case;
   std::size_t vectors = 0;
   for (const SelectedCase& selected : job) vectors += selected.configurations.size();
+  if (is_program) return vectors < enough_of_program && one.profile == first.profile;
   return vectors < enough_vectors && one.profile == first.profile && one.group == first.group;
 }
 
-std::vector<CasesOfJob> cases_of_jobs(const std::vector<SelectedCase>& cases) {
+std::vector<CasesOfJob> cases_of_jobs(const std::vector<SelectedCase>& cases, bool is_program) {
   std::vector<CasesOfJob> jobs;
   for (SelectedCase& next : split_by_plant(cases)) {
-    if (jobs.empty() || !has_room_for(next, jobs.back())) jobs.emplace_back();
+    if (jobs.empty() || !has_room_for(next, jobs.back(), is_program)) jobs.emplace_back();
     jobs.back().push_back(std::move(next));
   }
   return jobs;
@@ -161,7 +190,7 @@ Result<Jobs<VectorResult>> case_jobs(const std::vector<SelectedCase>& cases,
   Jobs<VectorResult> jobs;
   // Read here, so that the workers have them.
   for (const SelectedCase& selected : cases) goldens->origins_of(selected.the_case.profile);
-  for (const CasesOfJob& of_job : cases_of_jobs(cases)) {
+  for (const CasesOfJob& of_job : cases_of_jobs(cases, kind_of(options.port).is_program)) {
     std::shared_ptr<const VehicleModel> vehicle_model;
     if (const auto& plant = plant_of(of_job.front())) {
       auto loaded = vehicle_models.get(plant->vehicle);

@@ -34,7 +34,9 @@ struct Codec<VectorResult> {
 // A failure after other vectors is repeated in a new process, and the result is that of the
 // repetition. If the vector passes there, the failure stays, and VectorResult::after names the
 // others. So each failure can be reproduced. A timeout is not repeated; the other vectors of its
-// case time out too. After any other failure the next vector has a new process.
+// case time out too. After a failure other than wrong outputs the next vector has a new process.
+// A program may need seconds to start: after three repetitions in a row that failed too, failures
+// of a program by wrong outputs are not repeated.
 class CaseJob final : public PortJob<VectorResult> {
  public:
   // `vehicle_model` is that of the flights' vehicle; null for open loop.
@@ -56,7 +58,9 @@ class CaseJob final : public PortJob<VectorResult> {
   Result<void> start();
   Result<void> open_golden(const Vector& vector);
   Result<VectorResult> judged(const Vector& vector);
+  bool is_repeated(const VectorResult& failed) const;
   Result<VectorResult> repeated_alone(const Vector& vector, VectorResult failed);
+  bool must_start_again(std::size_t task, const VectorResult& result) const;
 
   std::vector<Vector> vectors_;
   std::shared_ptr<const VehicleModel> vehicle_model_;
@@ -65,6 +69,7 @@ class CaseJob final : public PortJob<VectorResult> {
   std::unique_ptr<PortHost> host_;
   std::vector<std::string> judged_by_host_;  // ids of vectors
   bool needs_new_process_ = false;           // for the next vector
+  int failed_alone_ = 0;                     // repetitions in a row that failed too
   std::shared_ptr<const Case> golden_of_;
   std::optional<Golden> golden_;
 };
@@ -91,7 +96,8 @@ class TimedJob final : public PortJob<VectorResult> {
 };
 
 // The jobs of the selected cases, in the order of the cases. An open-loop case is one job, or
-// several cases of one group are if together they have only few vectors. A flight is one job for
+// several cases of one group are if together they have only few vectors; of a program, several
+// cases of one profile, because it may need seconds to start. A flight is one job for
 // each plant configuration, so that several workers fly it at the same time. Errors: a vehicle
 // cannot be loaded.
 Result<Jobs<VectorResult>> case_jobs(const std::vector<SelectedCase>& cases,

@@ -57,9 +57,12 @@ bool adds_constants(const Lacks& lacks, const ModuleUnderTest& subject, const Tr
   return true;
 }
 
-FeatureSet lacking_features(const Lacks& lacks, const Trace& inputs, std::string_view profile) {
+FeatureSet lacking_features(const Lacks& lacks, const Trace& inputs,
+                            const ModuleUnderTest& subject) {
   if (lacks.features.none()) return {};
-  return lacks.features & features_of(inputs, profile);
+  FeatureSet used = features_of(inputs, subject.profile);
+  used.set(static_cast<std::size_t>(Feature::instances), subject.instances != Instances::one);
+  return lacks.features & used;
 }
 
 void leave_out(const FeatureSet& lacking, VectorResult& result) {
@@ -130,7 +133,7 @@ FeatureSet lacking_features(const Lacks& lacks, const Flown& flown, VectorResult
                                   others.front().name, others.front().value);
       return {};
     }
-    lacking |= lacking_features(lacks, *trace, result.profile);
+    lacking |= lacking_features(lacks, *trace, {result.profile, module_of(trace->present)});
   }
   return lacking;
 }

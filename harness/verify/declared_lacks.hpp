@@ -18,7 +18,8 @@ bool adds_constants(const Lacks& lacks, const ModuleUnderTest& subject, const Tr
                     std::vector<ParameterChange>& parameters, VectorResult& result);
 
 // The features that the port lacks and these inputs use.
-FeatureSet lacking_features(const Lacks& lacks, const Trace& inputs, std::string_view profile);
+FeatureSet lacking_features(const Lacks& lacks, const Trace& inputs,
+                            const ModuleUnderTest& subject);
 
 // A judged vector that uses features which the port lacks becomes unsupported. If it passed, and
 // uses one of them only, VectorResult::has_after_all names it.

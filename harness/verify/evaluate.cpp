@@ -137,7 +137,7 @@ Result<VectorResult> evaluate_case(const Case& the_case, const Rate& rate, const
   if (lacks.any()) {
     const Trace inputs = inputs_for(host.declarations(), the_case, rate);
     if (!adds_constants(lacks, subject_of(the_case), inputs, parameters, result)) return result;
-    lacking = lacking_features(lacks, inputs, the_case.profile);
+    lacking = lacking_features(lacks, inputs, subject_of(the_case));
   }
   const auto inputs = [&] { return inputs_for(host.declarations(), the_case, rate, parameters); };
   if (the_case.exact_only && level != Level::exact) {

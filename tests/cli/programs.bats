@@ -127,6 +127,24 @@ HEADROOM
   has "protocol: its name is \`other\`, it was \`program\` when the port was asked first"
 }
 
+# starts_of MODE: the vectors of a group by one worker; prints how often the program was started.
+starts_of() {
+  : >starts
+  STARTS="$PWD/starts" run "$ATTEST" run --port "$(program "$1")" --group attitude --rate 250 \
+    --profile px4-v1.5.5 --jobs 1 --no-diagnose
+}
+
+@test "one process of a program serves many vectors, also if they fail" {
+  starts_of "program.py counts_starts"
+  [ "$status" -eq 0 ]
+  has "PASS 18 of 20 vectors conform"
+  [ "$(wc -l <starts)" -eq 2 ] # one answers what it is
+  starts_of "program.py rolls"
+  [ "$status" -eq 1 ]
+  has "FAIL 18 failed"
+  [ "$(wc -l <starts)" -eq 5 ] # three failures were repeated alone
+}
+
 @test "a program that ends is a crash with its status, signal and last words" {
   judged "program.py exits"
   [ "$status" -eq 1 ]

@@ -128,6 +128,15 @@ TEST(DeclaredLacks, OfATopicThatIsPublishedAreNeedless) {
   EXPECT_THAT(needless_lacks({has_not}), IsEmpty());
 }
 
+TEST(DeclaredLacks, OfASecondInstanceConcernTheCasesThatNeedOne) {
+  const auto lacks = Lacks::parse(std::vector<std::string>{"instances"});
+  ASSERT_TRUE(lacks);
+  ModuleUnderTest subject{"px4-v1.16.0", Module::rate_unit};
+  EXPECT_TRUE(lacking_features(*lacks, publishing(), subject).none());
+  subject.instances = Instances::together;
+  EXPECT_THAT(names_of(lacking_features(*lacks, publishing(), subject)), ElementsAre("instances"));
+}
+
 TEST(DeclaredLacks, OfConstantsChangeTheParametersThatTheVectorDoesNotSet) {
   const auto lacks =
       Lacks::parse(std::vector<std::string>{"MC_ROLLRATE_P=0.2", "MC_ROLLRATE_I=0.2"});

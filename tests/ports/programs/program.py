@@ -142,6 +142,8 @@ def serve(mode, requests, answers):
         payload = of_other(mode, kind) or payload
         steps += kind == port.STEP
         is_special = kind == port.STEP and steps == 20
+        if mode == "rolls" and kind == port.STEP:
+            payload = payload[:4] + struct.pack("<f", 1) + payload[8:]
         frame = of_step(mode, request, payload, earlier) if is_special else answer(request, payload)
         if mode == "byte_by_byte":
             for byte in frame:
@@ -167,6 +169,9 @@ def main():
         answers.write(b"{" * 100_000)
         answers.flush()
         time.sleep(100)
+    if mode in ("counts_starts", "rolls"):
+        with open(os.environ["STARTS"], "a", encoding="utf-8") as starts:
+            starts.write("1\n")
     if mode == "hello_changes":
         starts = pathlib.Path(os.environ["STARTS"])
         if starts.read_text() != "0\n":
