@@ -35,7 +35,7 @@ std::optional<Diagnosis> diagnosed(const RunResult& run, const Examined& examine
   options.stop = interrupted;
   HostOptions host = examined.host;
   // That a topic is never published is said already, and must not look like a mistake in the law.
-  if (host.said) host.said->lacks.outputs |= silent_outputs(run.results);
+  if (host.said) host.said->lacks.outputs |= never_published_outputs(run.results);
   const auto vectors = [&](const faults::Fault* partner) {
     std::vector<VectorSimilarity> similarities;
     const auto jobs = diagnosis_jobs(examined.cases, run.results, host, partner, run.level);

@@ -44,14 +44,6 @@ struct Part {
 // message.
 using Property = std::pair<const char*, std::function<std::string(const RunResult&)>>;
 
-std::string parameters_of(const RunResult& run) {
-  std::vector<std::string> texts;
-  for (const ParameterChange& change : run.parameters) {
-    texts.push_back(fmt::format("{}={}", change.name, change.value));
-  }
-  return fmt::format("{}", fmt::join(texts, " "));
-}
-
 // The port's declarations, except its name.
 std::string declarations_of(const RunResult& run) {
   return fmt::format(
@@ -87,7 +79,7 @@ const std::vector<Property>& properties() {
       {"level", [](const RunResult& run) { return std::string(name_of(run.level)); }},
       {"selection", [](const RunResult& run) { return run.selection; }},
       {"recorded timing", [](const RunResult& run) { return run.timing; }},
-      {"parameters", parameters_of},
+      {"parameters", [](const RunResult& run) { return text_of(run.parameters, " "); }},
       {"number of shards", [](const RunResult& run) { return fmt::to_string(run.shard.count); }},
       {"limit of the port", limits_of},
   };

@@ -43,7 +43,9 @@ bool run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
   progress.finish();
   RunResult& run = plan.run;
   run.results = std::move(outcome.results);
-  settle_silent_topics(run.results);
+  settle_silent_topics(run.results, [&](const VectorResult& result) {
+    return plan.expected && plan.expected->expects(result);
+  });
   run.errors = std::move(outcome.errors);
   run.stopped_early = outcome.stopped_early;
   if (auto same = check_port(plan.host); !same) run.errors.push_back(same.error());

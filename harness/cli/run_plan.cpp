@@ -67,14 +67,6 @@ Result<void> check_recorded(const std::vector<SelectedCase>& cases, const RunPla
   return {};
 }
 
-std::string text_of(const std::vector<ParameterChange>& parameters) {
-  std::string text;
-  for (const ParameterChange& parameter : parameters) {
-    text += fmt::format(" --param {}={}", parameter.name, parameter.value);
-  }
-  return text;
-}
-
 // Stores the parameters of --param, or those for which the outputs of a recorded port were made.
 // Errors: a parameter that no selected case can have; other parameters than those of the recorded
 // port; a suite whose reference is a port.
@@ -92,7 +84,7 @@ Result<void> set_parameters(const RunOptions& options, const std::vector<Selecte
                       "parameters by `attest vectors --param`",
                       folder,
                       manifest->parameters.empty() ? "the parameters of the cases"
-                                                   : text_of(manifest->parameters).substr(1)));
+                                                   : text_of(manifest->parameters, ", ")));
     }
     *parameters = manifest->parameters;
   }
@@ -122,7 +114,9 @@ Result<void> check_rerun(const RunOptions& options, const SuiteFolder& suite,
     }
   }
   const auto options_of = [](const RunResult& of) {
-    return fmt::format("--level {}{}", name_of(of.level), text_of(of.parameters));
+    return fmt::format("--level {}{}{}", name_of(of.level),
+                       of.parameters.empty() ? "" : " --param ",
+                       text_of(of.parameters, " --param "));
   };
   if (options_of(*earlier) == options_of(run)) return {};
   return fail_at(options.select.rerun_failed,

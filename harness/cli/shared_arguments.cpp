@@ -181,6 +181,7 @@ Result<std::vector<ParameterChange>> parse_parameters(const std::vector<std::str
     if (!accepted) return fail(fmt::format("--param {}: {}", text, accepted.error().message));
     parameters.push_back(*change);
   }
+  std::ranges::stable_sort(parameters, {}, &ParameterChange::name);
   return parameters;
 }
 

@@ -44,7 +44,8 @@ Option add_jobs(Command command, int& jobs, const char* what,
 // The reports of `run` and `merge`.
 void add_reports(Command command, ReportOptions& options);
 
-// Parses the texts of --param. Errors: not NAME=VALUE; a parameter that no case can have.
+// Parses the texts of --param, and sorts them by name, as in a manifest. Errors: not NAME=VALUE; a
+// parameter that no case can have.
 Result<std::vector<ParameterChange>> parse_parameters(const std::vector<std::string>& texts,
                                                       const std::vector<SelectedCase>& cases);
 

@@ -72,7 +72,7 @@ bool has_rate_feed_forward(const Parameters& parameters) {
 }
 
 bool is_scaled(float scale, const Parameters& parameters) {
-  return scale != 1 && parameters["MC_BAT_SCALE_EN"] != 0;
+  return scale != 1 && scale > 0 && parameters["MC_BAT_SCALE_EN"] != 0;
 }
 
 FeatureSet used_by(const attest_inputs& in, const Parameters& parameters) {
@@ -82,9 +82,12 @@ FeatureSet used_by(const attest_inputs& in, const Parameters& parameters) {
   const float threshold = parameters["MC_RATT_TH"];
   const bool is_beyond = std::abs(sticks.x) > threshold || std::abs(sticks.y) > threshold;
   const auto& limits = in.multirotor_motor_limits;
-  FeatureSet used = if_true(by_rates && mode.flag_control_manual_enabled, Feature::acro);
-  used |= if_true(by_rates && !mode.flag_control_manual_enabled, Feature::offboard_rates);
-  used |= if_true(mode.flag_control_rattitude_enabled && is_beyond, Feature::rattitude);
+  // Beyond the threshold the law goes on as without attitude control.
+  const bool is_rattitude = mode.flag_control_rattitude_enabled && is_beyond;
+  const bool is_manual = mode.flag_control_manual_enabled;
+  FeatureSet used = if_true((by_rates || is_rattitude) && is_manual, Feature::acro);
+  used |= if_true((by_rates || is_rattitude) && !is_manual, Feature::offboard_rates);
+  used |= if_true(is_rattitude, Feature::rattitude);
   used |= if_true(in.vehicle_attitude_setpoint.yaw_sp_move_rate != 0, Feature::yaw_feed_forward);
   used |= if_true(in.vehicle_attitude_setpoint.disable_mc_yaw_control, Feature::weathervane);
   used |= if_true(parameters["VT_OPT_RECOV_EN"] != 0, Feature::tailsitter);

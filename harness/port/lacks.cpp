@@ -6,11 +6,11 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/core/suggestion.hpp"
 #include "harness/port/port.hpp"
 #include "harness/port/profiles.hpp"
-#include "harness/trace/output_topics.hpp"
 
 namespace attest {
 namespace {
@@ -121,12 +121,12 @@ Result<Lacks> Lacks::parse(std::span<const std::string> words) {
   return lacks;
 }
 
-std::vector<std::string_view> topics_in(const ChannelSet& outputs, Module module) {
-  std::vector<std::string_view> topics;
-  for (const OutputTopic& topic : output_topics(module)) {
-    if (outputs[topic.published]) topics.push_back(topic.name);
+std::string text_of(std::span<const ParameterChange> parameters, std::string_view separator) {
+  std::vector<std::string> texts;
+  for (const ParameterChange& one : parameters) {
+    texts.push_back(fmt::format("{}={}", one.name, one.value));
   }
-  return topics;
+  return fmt::format("{}", fmt::join(texts, separator));
 }
 
 Result<ParameterChange> parse_parameter(const std::string& text) {

@@ -41,8 +41,8 @@ struct Lacks {
   static Result<Lacks> parse(std::span<const std::string> words);
 };
 
-// The output topics of the module of which the set has the flag `published`.
-std::vector<std::string_view> topics_in(const ChannelSet& outputs, Module module);
+// "MC_YAW_FF=0.5", separated.
+std::string text_of(std::span<const ParameterChange> parameters, std::string_view separator);
 
 // Parses "NAME=VALUE". Errors: other text; a value that is no finite number.
 Result<ParameterChange> parse_parameter(const std::string& text);

@@ -49,7 +49,9 @@ std::optional<DocumentTable> accuracy_of(const RunResult& run) {
       {"signal", "unit", "largest", "groups"}};
   for (const auto& [index, groups] : signals) {
     const Channel& channel = channels()[index];
-    table.rows.push_back({std::string(channel.name), std::string(unit_of(channel.quantity)),
+    const bool is_shared = channels_named(channel.name).count() > 1;
+    const std::string of = is_shared ? fmt::format(" of {}", name_of(channel.module)) : "";
+    table.rows.push_back({std::string(channel.name) + of, std::string(unit_of(channel.quantity)),
                           fmt::format("{:.2g}", largest(groups)), worst_groups(groups)});
   }
   return table;

@@ -10,7 +10,7 @@ namespace attest {
 
 // The largest deviation of each signal, and the groups in which it deviates most:
 //
-//     Accuracy: largest deviation of each signal
+//     accuracy: the largest deviation of each signal, and the groups where it is largest
 //       signal                           unit   largest  groups
 //       out/vehicle_rates_setpoint.yaw   rad/s  0.0021   large_angle 0.0021, attitude 3.1e-06
 //

@@ -116,6 +116,11 @@ std::string impossible_number(const VectorResult& result) {
   if (result.tightest && is_negative_or_nan(result.tightest->ratio)) {
     return fmt::format("a headroom of {}", result.tightest->ratio);
   }
+  for (const Largest& largest : result.largest) {
+    if (is_negative_or_nan(largest.deviation)) {
+      return fmt::format("a largest deviation of {}", largest.deviation);
+    }
+  }
   for (const MetricResult& metric : result.metrics) {
     if (metric.tolerance < 0 || std::isnan(metric.min) || std::isnan(metric.max)) {
       return fmt::format("impossible bounds of the metric `{}`", metric.name);
@@ -152,11 +157,33 @@ std::string contradiction(const VectorResult& result, const RunResult& run) {
   if (result.exact_only && run.level == Level::exact) {
     return "is skipped as a vector of the exact level, which is the level of the run";
   }
+  if (!result.lacking.empty() && result.verdict != Verdict::unsupported) {
+    return "lacks features, but is not unsupported";
+  }
+  if (!(result.lacking.empty() && result.has_after_all.empty()) && !run.lacks.any()) {
+    return "is of a port that lacks something, which `port` does not have";
+  }
   const bool is_right = !fails_a_run(result.verdict) || result.verdict == Verdict::xpass;
   if (!is_right || result.verdict == Verdict::xfail) return "";
   const std::string sign = sign_of_failure(result);
   return sign.empty() ? ""
                       : fmt::format("has the verdict {}, but {}", name_of(result.verdict), sign);
+}
+
+// A topic that a vector lacks, without a vector of its profile that failed for it; empty if there
+// is none.
+std::string unsettled_topic(const RunResult& run) {
+  std::set<std::pair<std::string, std::string>> failed;
+  for (const VectorResult& result : run.results) {
+    if (result.verdict == Verdict::pass) continue;
+    for (const std::string& topic : result.silent) failed.emplace(result.profile, topic);
+  }
+  for (const VectorResult& result : run.results) {
+    for (const std::string& topic : result.silent) {
+      if (!failed.contains({result.profile, topic})) return topic;
+    }
+  }
+  return "";
 }
 
 void read_results(JsonReader& reader, RunResult& run) {
@@ -177,6 +204,10 @@ void read_results(JsonReader& reader, RunResult& run) {
       reader.wrong(fmt::format("contradicts itself: {} {}", id, what));
     }
     run.results.push_back(*std::move(result));
+  }
+  if (const std::string topic = unsettled_topic(run); !topic.empty()) {
+    reader.wrong(
+        fmt::format("contradicts itself: no vector failed because {} is not published", topic));
   }
   for (const json& one : reader.list("errors")) {
     auto error = error_from_json(one);

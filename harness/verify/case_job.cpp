@@ -168,7 +168,10 @@ bool has_room_for(const SelectedCase& next, const CasesOfJob& job, bool is_progr
   const Case &first = job.front().the_case, &one = next.the_case;
   std::size_t vectors = 0;
   for (const SelectedCase& selected : job) vectors += selected.configurations.size();
-  if (is_program) return vectors < enough_of_program && one.profile == first.profile;
+  // A case with all its rates has a process of its own, so that each case meets a first instance.
+  if (is_program && next.configurations.size() < enough_vectors) {
+    return vectors < enough_of_program && one.profile == first.profile;
+  }
   return vectors < enough_vectors && one.profile == first.profile && one.group == first.group;
 }
 

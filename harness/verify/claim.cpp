@@ -28,6 +28,7 @@ struct Tally {
 struct Group {
   std::map<LoopRate, Tally> rates;
   bool passes = false, fails = false;
+  std::set<std::string> silent;  // topics that its vectors need and the port did not publish
   // `skipped` is without the `good` vectors, `unsupported` without is_of_another_step().
   std::size_t unsupported = 0, skipped = 0, expected_failures = 0;
 
@@ -60,6 +61,7 @@ void add(const VectorResult& result, const RunResult& run, Group& group) {
   group.passes = group.passes || result.verdict == Verdict::pass;
   group.fails = group.fails || fails_a_run(result.verdict);
   if (result.verdict == Verdict::xfail) ++group.expected_failures;
+  group.silent.insert(result.silent.begin(), result.silent.end());
   if (result.verdict == Verdict::skip && !is_exact_only) ++group.skipped;
   if (result.verdict == Verdict::unsupported && !is_of_another_step(result, run)) {
     ++group.unsupported;
@@ -209,6 +211,11 @@ std::vector<std::string> missing_of(const Groups& groups, const RunResult& run,
   }
   if (run.lacks.any()) {
     missing.push_back(fmt::format("lacks {}", fmt::join(run.lacks.words, ", ")));
+  }
+  std::set<std::string> silent;
+  for (const auto& [name, group] : groups) silent.insert(group.silent.begin(), group.silent.end());
+  if (!silent.empty()) {
+    missing.push_back(fmt::format("does not publish {}", fmt::join(silent, ", ")));
   }
   if (!run.timing.empty()) missing.emplace_back("at recorded times");
   if (run.fixed_step) {

@@ -6,8 +6,8 @@
 // port declares no unit of the profile, the claim is about its optional modules: a law alone. Cases
 // that are compared at the exact level only may be skipped at another level
 // (VectorResult::exact_only), but of each group at least one vector must be compared. A port with a
-// fixed step, changed parameters, outputs that were not recorded, or no process of its own does not
-// conform. A claim names the groups that fail, and what is missing.
+// fixed step, changed parameters, declared lacks, a topic that it does not publish, or no process
+// of its own does not conform. A claim names the groups that fail, and what is missing.
 //
 // At the level events a port does not conform, because the wide bounds of that level pass some
 // faults of the catalogue (tests/QUALITY.md). The claim is then that its events agree.

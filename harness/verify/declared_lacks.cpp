@@ -50,9 +50,8 @@ bool adds_constants(const Lacks& lacks, const ModuleUnderTest& subject, const Tr
                                   constant.value, other->value);
       return false;
     }
-    if (!sets(in_force, constant) && !is_default(constant, subject)) {
-      parameters.push_back(set);
-    }
+    // Also if the inputs set it: until then they have the default.
+    if (!sets(given, constant) && !is_default(constant, subject)) parameters.push_back(set);
   }
   return true;
 }
@@ -99,7 +98,7 @@ ChannelSet lacking_in_flight(const Lacks& lacks, Module module) {
   ChannelSet needed = channels_of(module, "out/");
   for (std::size_t i = 0; i < channels().size(); ++i) {
     const Channel& channel = channels()[i];
-    // Nothing in a flight reads the integrals and the landing gear.
+    // No other unit and no motor reads the integrals and the landing gear.
     const bool is_gear = channel.name.starts_with("out/actuator_controls_0.control[") &&
                          channel.name >= "out/actuator_controls_0.control[4]";
     if (channel.stage == Stage::integrator || is_gear) needed.reset(i);
@@ -142,6 +141,7 @@ std::vector<std::string> needless_lacks(const std::vector<VectorResult>& results
   std::set<std::string> had;
   std::map<std::string, bool> passes_always;  // of the features
   for (const VectorResult& result : results) {
+    if (result.plant_configuration) continue;  // a flight that uses a feature is not flown
     if (result.lacking.empty()) {
       had.insert(result.has_after_all.begin(), result.has_after_all.end());
     } else if (result.lacking.size() == 1) {

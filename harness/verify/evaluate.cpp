@@ -30,12 +30,12 @@ void run_and_judge(Trace& answered, const Trace& want, const ModuleUnderTest& su
   if (marks_declined(host.declarations(), result)) return;
   const Lacks& lacks = host.declarations().lacks;
   const auto fault = host.drive(subject, answered);
-  if (!fault && !leaves_values_to_judge(lacks.outputs, want)) {
+  if (!fault && lacks.outputs.any() && !leaves_values_to_judge(lacks.outputs, want)) {
     result.verdict = Verdict::unsupported;
-    result.reason = "nothing is left to judge: the port declares that it lacks every output";
+    result.reason = "no value is left to judge: the others are 0, or the port lacks them";
     return;
   }
-  note_published(lacks, answered, result);
+  if (!host.declarations().is_recorded) note_published(lacks, answered, result);
   const ChannelSet silent = options.leaves_out_silent && !fault
                                 ? silent_outputs(answered, want, lacks.outputs, result)
                                 : ChannelSet();
@@ -137,9 +137,9 @@ Result<VectorResult> evaluate_case(const Case& the_case, const Rate& rate, const
   if (lacks.any()) {
     const Trace inputs = inputs_for(host.declarations(), the_case, rate);
     if (!adds_constants(lacks, subject_of(the_case), inputs, parameters, result)) return result;
-    lacking = lacking_features(lacks, inputs, subject_of(the_case));
   }
   const auto inputs = [&] { return inputs_for(host.declarations(), the_case, rate, parameters); };
+  if (lacks.any()) lacking = lacking_features(lacks, inputs(), subject_of(the_case));
   if (the_case.exact_only && level != Level::exact) {
     run_uncompared(inputs(), subject_of(the_case), host, result);
     leave_out(lacking, result);

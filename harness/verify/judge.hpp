@@ -30,9 +30,9 @@ void leave_out_from(std::size_t tick, const Trace& want, Trace& answered);
 // `answered` then does not publish a topic at a tick, the topic keeps the values last published.
 void fill_in(const ChannelSet& not_judged, const Trace& want, Trace& answered);
 
-// Whether a comparison with `want` without the outputs `not_judged` leaves a value: an output other
-// than a `published`. If the `published` of its topic is not judged, `want` must publish that topic
-// at a tick.
+// Whether a comparison with `want` without the outputs `not_judged` leaves a value that is not 0 at
+// all ticks: an output other than a `published`. If the `published` of its topic is not judged,
+// `want` must publish that topic at a tick.
 bool leaves_values_to_judge(const ChannelSet& not_judged, const Trace& want);
 
 // Adds to the reason the mistake of the recording that would give these outputs (misrecording.hpp).

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "harness/host/manifest.hpp"
 #include "harness/host/recorded_outputs.hpp"
@@ -25,14 +24,6 @@ bool can_run(const Declarations& port, const Case& the_case,
 
 std::string id_of(const Case& the_case, const RunConfiguration& configuration) {
   return result_for(the_case, configuration).id();
-}
-
-std::string text_of(const std::vector<ParameterChange>& parameters) {
-  std::vector<std::string> texts;
-  for (const ParameterChange& one : parameters) {
-    texts.push_back(fmt::format("{}={}", one.name, one.value));
-  }
-  return texts.empty() ? "the parameters of the cases" : fmt::format("{}", fmt::join(texts, ", "));
 }
 
 // The manifest of the folder, or a new one.
@@ -55,7 +46,10 @@ Result<Manifest> manifest_for(const std::filesystem::path& folder, std::optional
     return another("a fixed step of " +
                    (manifest->fixed_step ? manifest->fixed_step->to_string() + " Hz" : "none"));
   }
-  if (manifest->parameters != parameters) return another(text_of(manifest->parameters));
+  if (manifest->parameters != parameters) {
+    return another(manifest->parameters.empty() ? "the parameters of the cases"
+                                                : text_of(manifest->parameters, ", "));
+  }
   return manifest;
 }
 

@@ -35,6 +35,12 @@ std::optional<std::size_t> first_published(const OutputTopic& topic, const Trace
   return static_cast<std::size_t>(found - trace.samples.begin());
 }
 
+std::size_t count_published(const OutputTopic& topic, const Trace& trace) {
+  const Channel& flag = channels()[topic.published];
+  return static_cast<std::size_t>(std::ranges::count_if(
+      trace.samples, [&](const Sample& sample) { return is_published(flag, sample); }));
+}
+
 Deviation missing(const OutputTopic& topic, std::size_t tick, const Trace& want) {
   Deviation deviation;
   deviation.tick = tick;
@@ -46,11 +52,18 @@ Deviation missing(const OutputTopic& topic, std::size_t tick, const Trace& want)
   return deviation;
 }
 
+// Two profiles are two ports.
+std::string key_in(const VectorResult& result, const std::string& topic) {
+  return fmt::format("{} {}", result.profile, topic);
+}
+
 void fail_for(const std::string& reason, VectorResult& result) {
   result.reason = result.reason.empty() ? reason : fmt::format("{}; {}", reason, result.reason);
   if (result.verdict == Verdict::pass) result.verdict = Verdict::fail;
-  if (!result.first) result.first = result.first_silence;
-  result.deviating_ticks = std::max<std::size_t>(result.deviating_ticks, 1);
+  if (!result.first) {
+    result.first = result.first_silence;
+    result.deviating_ticks = result.silent_ticks;
+  }
   result.tightest.reset();
 }
 
@@ -61,23 +74,28 @@ ChannelSet silent_outputs(const Trace& got, const Trace& want, const ChannelSet&
   const Module module = module_of(want.present);
   ChannelSet silent;
   std::vector<std::string> published, not_published;
-  std::optional<Deviation> first;
   for (const OutputTopic& topic : output_topics(module)) {
     if (lacks[topic.published] || !want.present[topic.published]) continue;
     const auto due = first_published(topic, want);
     if (!due) continue;
+    const std::string key = key_of(module, topic.name);
     if (first_published(topic, got)) {
-      published.push_back(key_of(module, topic.name));
+      published.push_back(key);
       continue;
     }
-    not_published.push_back(key_of(module, topic.name));
+    not_published.push_back(key);
     silent |= channels_of(module, fmt::format("out/{}.", topic.name));
-    if (!first || *due < first->tick) first = missing(topic, *due, want);
+    const Deviation first = missing(topic, *due, want);
+    if (result.first_silence && result.first_silence->timestamp_us <= first.timestamp_us) continue;
+    result.first_silence = first;
+    result.silent_ticks = count_published(topic, want);
   }
   result.published.insert(result.published.end(), published.begin(), published.end());
-  if (silent.none() || published.empty()) return {};
+  if (silent.none() || published.empty()) {
+    result.first_silence.reset();
+    return {};
+  }
   result.silent.insert(result.silent.end(), not_published.begin(), not_published.end());
-  result.first_silence = first;
   return silent;
 }
 
@@ -103,31 +121,47 @@ Result<void> leave_out_silent(const Lacks& lacks, Trace& flown, VectorResult& re
   return {};
 }
 
-ChannelSet silent_outputs(const std::vector<VectorResult>& results) {
+namespace {
+
+std::set<std::string> published_in(const std::vector<VectorResult>& results) {
+  std::set<std::string> published;
+  for (const VectorResult& result : results) {
+    for (const std::string& topic : result.published) published.insert(key_in(result, topic));
+  }
+  return published;
+}
+
+}  // namespace
+
+ChannelSet never_published_outputs(const std::vector<VectorResult>& results) {
+  const std::set<std::string> published = published_in(results);
   ChannelSet outputs;
   for (const VectorResult& result : results) {
-    for (const std::string& key : result.silent) outputs |= outputs_of(key);
+    for (const std::string& topic : result.silent) {
+      if (!published.contains(key_in(result, topic))) outputs |= outputs_of(topic);
+    }
   }
   return outputs;
 }
 
-void settle_silent_topics(std::vector<VectorResult>& results) {
-  std::set<std::string> published;
+void settle_silent_topics(std::vector<VectorResult>& results,
+                          const std::function<bool(const VectorResult&)>& is_excused) {
+  const std::set<std::string> published = published_in(results);
   std::map<std::string, std::size_t> vectors;
   for (const VectorResult& result : results) {
-    published.insert(result.published.begin(), result.published.end());
-    for (const std::string& key : result.silent) ++vectors[key];
+    for (const std::string& topic : result.silent) ++vectors[key_in(result, topic)];
   }
   std::set<std::string> found;
   for (VectorResult& result : results) {
     if (!is_judged(result.verdict)) continue;
-    for (const std::string& key : result.silent) {
+    for (const std::string& topic : result.silent) {
+      const std::string key = key_in(result, topic);
       if (published.contains(key)) {
-        fail_for(fmt::format("{} is not published, at no tick", topic_of(key)), result);
-      } else if (found.insert(key).second) {
-        fail_for(fmt::format("the port never publishes {}, which {} of these vectors have; their "
+        fail_for(fmt::format("{} is published at no tick", topic_of(topic)), result);
+      } else if (is_excused(result) || found.insert(key).second) {
+        fail_for(fmt::format("the port never publishes {}, which {} of these vectors need; their "
                              "other outputs are judged",
-                             topic_of(key), vectors[key]),
+                             topic_of(topic), vectors[key]),
                  result);
       }
     }

@@ -2,6 +2,7 @@
 // other outputs of all vectors are judged.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "harness/compare/compare.hpp"
@@ -17,14 +18,18 @@ namespace attest {
 ChannelSet silent_outputs(const Trace& got, const Trace& want, const ChannelSet& lacks,
                           VectorResult& result);
 
-// All outputs of the topics that are silent in a result.
-ChannelSet silent_outputs(const std::vector<VectorResult>& results);
+// All outputs of the topics that no vector of a profile publishes.
+ChannelSet never_published_outputs(const std::vector<VectorResult>& results);
 
 // Removes the silent topics from the channels of a flown trace. Errors: the reference fails.
 Result<void> leave_out_silent(const Lacks& lacks, Trace& flown, VectorResult& result);
 
-// Decides about silent topics when all vectors were judged. A topic that the port published in no
-// vector: the first vector that lacks it fails. Otherwise all vectors that lack it fail.
-void settle_silent_topics(std::vector<VectorResult>& results);
+// Decides about silent topics when all vectors were judged. If the port published the topic in no
+// vector of the profile, the first vector that needs it fails. Otherwise each vector fails that
+// needs it and lacks it. A vector that `is_excused` fails in addition, so that an expected failure
+// excuses no other vector.
+void settle_silent_topics(
+    std::vector<VectorResult>& results, const std::function<bool(const VectorResult&)>& is_excused =
+                                            [](const VectorResult&) { return false; });
 
 }  // namespace attest

@@ -86,6 +86,7 @@ struct VectorResult {
   // not compared.
   std::vector<std::string> published, silent;
   std::optional<Deviation> first_silence;  // the first tick at which a silent topic is due
+  std::size_t silent_ticks = 0;            // at which that topic is due
 
   std::string case_id() const { return profile + "/" + group + "/" + name; }
   RunConfiguration configuration() const { return {rate, plant_configuration}; }

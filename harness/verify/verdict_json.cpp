@@ -188,7 +188,10 @@ nlohmann::json to_json(const VectorResult& result) {
   for (const auto& [key, list] : lists) {
     if (!(result.*list).empty()) out[key] = result.*list;
   }
-  if (result.first_silence) out["first_silence"] = deviation_to_json(*result.first_silence);
+  if (result.first_silence) {
+    out["first_silence"] = deviation_to_json(*result.first_silence);
+    out["silent_ticks"] = result.silent_ticks;
+  }
   return out;
 }
 
@@ -237,6 +240,7 @@ Result<VectorResult> vector_result_from_json(const nlohmann::json& json) {
   }
   if (reader.has("first_silence")) {
     out.first_silence = deviation_from({reader.member("first_silence"), error});
+    out.silent_ticks = reader.count("silent_ticks");
   }
   if (reader.has("metrics")) {
     for (const auto& metric : reader.member("metrics")) {

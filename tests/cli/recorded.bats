@@ -85,6 +85,7 @@ jsonschema.Draft7Validator(json.load(open(sys.argv[1]))).validate(report)
 assert report["port"]["lacks"] == ["mc_att_ctrl_status"], report["port"]
 CHECK
   has "because: lacks mc_att_ctrl_status; "
+  lacks "but it has"
   sed -i "s#^lacks = .*#lacks = ['mc_att_ctrl_statu']#" vectors/manifest.toml
   run "$ATTEST" run --port recorded:vectors "${filter[@]}"
   [ "$status" -eq 2 ]
@@ -244,7 +245,7 @@ not_recorded() {
     run "$ATTEST" run --port recorded:vectors "${filter[@]}"
     [ "$status" -eq 2 ]
     has "NONE 0 of 1 vector conform, 1 unsupported"
-    has "nothing is left to judge: the port declares that it lacks every output"
+    has "no value is left to judge"
   done
 
   not_recorded "${flags[@]}"

@@ -26,8 +26,7 @@ Lacks parsed(const std::vector<std::string>& words) {
 TEST(Lacks, AreFeaturesOutputsAndConstants) {
   const Lacks lacks = parsed({"sticks", "rate_ctrl_status", "MC_YAW_FF=0.25"});
   EXPECT_THAT(names_of(lacks.features), ElementsAre("sticks"));
-  EXPECT_THAT(topics_in(lacks.outputs, Module::rate_unit), ElementsAre("rate_ctrl_status"));
-  EXPECT_THAT(topics_in(lacks.outputs, Module::attitude_unit), IsEmpty());
+  EXPECT_EQ(lacks.outputs, channels_of(Module::rate_unit, "out/rate_ctrl_status."));
   ASSERT_NE(lacks.constant("MC_YAW_FF"), nullptr);
   EXPECT_EQ(lacks.constant("MC_YAW_FF")->answer_to(0.25f), ATTEST_OK);
   EXPECT_EQ(lacks.constant("MC_YAW_FF")->answer_to(0.5f), ATTEST_UNSUPPORTED);
@@ -94,6 +93,28 @@ TEST(Features, AreUsedIfOneTickUsesThem) {
   const Use uses[] = {
       {Module::mc_att_control, "acro",
        [](Sample& s) { s.in.vehicle_control_mode.flag_control_attitude_enabled = 0; }},
+      {Module::mc_att_control, "acro",
+       [](Sample& s) {
+         s.in.vehicle_control_mode.flag_control_rattitude_enabled = 1;
+         s.in.manual_control_setpoint.x = 1.5f;
+       }},
+      {Module::mc_att_control, "offboard_rates",
+       [](Sample& s) {
+         s.in.vehicle_control_mode.flag_control_attitude_enabled = 0;
+         s.in.vehicle_control_mode.flag_control_manual_enabled = 0;
+       }},
+      {Module::mc_att_control, "mode_changes",
+       [](Sample& s) { s.in.vehicle_control_mode.flag_control_auto_enabled = 1; }},
+      {Module::mc_att_control, "vtol", [](Sample& s) { s.in.vehicle_status.is_vtol = 1; }},
+      {Module::attitude_unit, "autotune",
+       [](Sample& s) { s.attitude_in.autotune_attitude_control_status.state = 3; }},
+      {Module::attitude_law, "weathervane",
+       [](Sample& s) { s.attitude_law.in.law.weathervane = 1; }},
+      {Module::rate_law, "tpa",
+       [](Sample& s) {
+         s.rate_law.in.rate_gains.tpa_slope = 1;
+         s.rate_law.in.rate_gains.tpa_break = 0.2f;
+       }},
       {Module::mc_att_control, "saturation",
        [](Sample& s) { s.in.multirotor_motor_limits.yaw = 4; }},
       {Module::mc_att_control, "yaw_feed_forward",
