@@ -68,7 +68,9 @@ struct RateStages {
     return gains.feed_forward.cwiseProduct(rates_sp);
   }
 
-  // Uses the integral from before this step's update.
+  // The integral that is part of the torque: that of before this step's update.
+  ATTEST_INLINE static Vector in_torque(const Vector& before, const Vector&) { return before; }
+
   ATTEST_INLINE static Vector torque(const Vector& p, const Vector& integral, const Vector& d,
                                      const Vector& ff) {
     return ((p + integral) - d) + ff;
@@ -140,9 +142,9 @@ ATTEST_INLINE Vector3<Scalar> RateLaw<Scalar, Stages>::update(const RateInput<Sc
   const Vector3<Scalar> p = stages_.proportional(error, gains_);
   const Vector3<Scalar> d = stages_.derivative(in.acceleration_B, gains_);
   const Vector3<Scalar> ff = stages_.feed_forward(in.rates_sp_B, gains_);
-  const Vector3<Scalar> torque = stages_.torque(p, integral_, d, ff);
+  const Vector3<Scalar> before = integral_;
   if (stages_.may_integrate(in.landed, in.maybe_landed)) integrate(error, in.dt_s);
-  return torque;
+  return stages_.torque(p, stages_.in_torque(before, integral_), d, ff);
 }
 
 template <typename Scalar, typename Stages>

@@ -144,6 +144,11 @@ const Fault attitude_list[] = {
     {"tilt-as-sine", "attitude", Stage::tilt, "uses the sine as the angle", "a tilt of 20 deg",
      "a small-angle shortcut",
      [](FaultyLaw& law) { change_tilt_angle(law, [](float s, float) { return s; }); }},
+    {"tilt-sine-is-0", "attitude", Stage::tilt, "takes the sine of the tilt error for 0",
+     "any tilt", "a missing term",
+     [](FaultyLaw& law) {
+       change_tilt_angle(law, [](float, float c) { return elementary::atan2(0.0f, c); });
+     }},
     {"tilt-by-asin", "attitude", Stage::tilt, "uses asin instead of atan2", "a tilt beyond 90 deg",
      "atan2 arguments",
      [](FaultyLaw& law) {
@@ -232,6 +237,15 @@ const Fault attitude_list[] = {
        law.attitude.is_upset = [](float) { return true; };
        law.attitude.blend = [](const Vector&, const Vector& direct, float, float) {
          return direct;
+       };
+     }},
+    {"direct-weighted", "attitude", Stage::blend,
+     "uses the quaternion error at all tilts, with the yaw weight on its yaw",
+     "a tilt of 30 deg, or a tilted setpoint with a yaw error", "another law",
+     [](FaultyLaw& law) {
+       law.attitude.is_upset = [](float) { return true; };
+       law.attitude.blend = [](const Vector&, const Vector& direct, float, float weight) {
+         return Vector(direct[0], direct[1], direct[2] * weight);
        };
      }},
     {"outputs-late", "attitude", Stage::output, "publishes its outputs one tick late",

@@ -49,25 +49,6 @@ void differentiate(FaultyLaw& law, Value value) {
   };
 }
 
-// The torque of roll and pitch has the integral after this step's update.
-void integrate_first(FaultyLaw& law) {
-  struct Seen {
-    Vector p = Vector::Zero(), d = Vector::Zero(), ff = Vector::Zero();
-  };
-  auto seen = std::make_shared<Seen>();
-  change_torque(law, [seen](const Vector& p, const Vector& i, const Vector& d, const Vector& ff) {
-    *seen = {p, d, ff};
-    return RateLaw::torque(p, i, d, ff);
-  });
-  also_after(law.rate_unit, [seen](const RateIn&, RateOut& out) {
-    if (out.vehicle_torque_setpoint.published == 0) return;
-    const auto& status = out.rate_ctrl_status;
-    const Vector integral(status.rollspeed_integ, status.pitchspeed_integ, status.yawspeed_integ);
-    const Vector torque = RateLaw::torque(seen->p, integral, seen->d, seen->ff);
-    for (int i = 0; i < 2; ++i) out.vehicle_torque_setpoint.xyz[i] = torque[i];
-  });
-}
-
 template <typename Factor>
 void change_i_factor(FaultyLaw& law, Factor factor) {
   law.rate_unit.rate.i_factor = factor;
@@ -100,8 +81,29 @@ const Fault torque_list[] = {
      [](FaultyLaw& law) {
        change_torque(law, [](V p, V, V d, V ff) { return Vector((p - d) + ff); });
      }},
+    {"cascade-i-never", "rates", Stage::i, "has no integral: it stays 0", "an error that lasts",
+     "a missing term",
+     [](FaultyLaw& law) { law.rate_unit.rate.may_integrate = [](bool, bool) { return false; }; }},
+    {"cascade-rates-setpoint-late", "rates", Stage::latching,
+     "uses the rates setpoint one step late", "a setpoint that changes", "one-tick delay",
+     [](FaultyLaw& law) {
+       struct Waiting {
+         decltype(RateIn::vehicle_rates_setpoint) sample = {};
+         std::uint32_t bit = 0;
+       };
+       also_before(law.rate_unit, [waiting = Waiting()](RateIn& in) mutable {
+         constexpr std::uint32_t topic = ATTEST_RATE_UPDATED_VEHICLE_RATES_SETPOINT;
+         const Waiting arrived{in.vehicle_rates_setpoint, in.updated & topic};
+         in.vehicle_rates_setpoint = waiting.sample;
+         in.updated = (in.updated & ~topic) | waiting.bit;
+         waiting = arrived;
+       });
+     }},
     {"cascade-i-of-this-step", "rates", Stage::i, "adds the integral after this step's update",
-     "any error", "steps exchanged", integrate_first},
+     "any error", "steps exchanged",
+     [](FaultyLaw& law) {
+       law.rate_unit.rate.in_torque = [](V, V after) { return Vector(after); };
+     }},
     {"cascade-ff-missing", "rates", Stage::ff, "has no feed-forward", "a feed-forward gain",
      "a missing term",
      [](FaultyLaw& law) {

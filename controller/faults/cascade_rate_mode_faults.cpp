@@ -205,10 +205,11 @@ const Fault acro_list[] = {
      "an error while disarmed", "a helpful extra",
      [](FaultyLaw& law) {
        auto armed = std::make_shared<bool>(false);
-       law.rate_unit.step.resets_integral = [armed](const cascade::RateTopics& topics) {
-         *armed = topics.mode.flag_armed != 0;
-         return RateStepLaw::resets_integral(topics);
-       };
+       law.rate_unit.step.resets_integral =
+           [armed, then = law.rate_unit.step.resets_integral](const cascade::RateTopics& topics) {
+             *armed = topics.mode.flag_armed != 0;
+             return then(topics);
+           };
        also_after(law.rate_unit, [armed](const RateIn&, RateOut& out) {
          if (*armed) return;
          for (float& torque : out.vehicle_torque_setpoint.xyz) torque = 0;

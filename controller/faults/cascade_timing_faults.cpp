@@ -183,6 +183,18 @@ const Fault timing_list[] = {
     {"cascade-rate-dt-one-late", "timing", Stage::timing,
      "uses the previous period in the rate unit", "jitter", "one-tick delay",
      [](FaultyLaw& law) { measure_rate(law, one_late()); }},
+    {"cascade-rate-clock-shared", "instances", Stage::timing,
+     "holds the last timestamp of the rate unit in a variable that all instances share",
+     "a second instance", "static state",
+     [](FaultyLaw& law) {
+       // Lives as long as any instance, so that a test vector does not depend on the previous one.
+       static std::weak_ptr<std::uint64_t> of_living_instances;
+       auto last = of_living_instances.lock();
+       if (!last) of_living_instances = last = std::make_shared<std::uint64_t>(0);
+       measure_rate(law, [last](std::uint64_t now, std::uint64_t) {
+         return RateStepStages::Law::step_time(now, std::exchange(*last, now));
+       });
+     }},
     {"cascade-rate-dt-in-ms", "timing", Stage::timing, "counts whole milliseconds in the rate unit",
      "333 Hz, or jitter", "integer division",
      [](FaultyLaw& law) { measure_rate(law, whole_milliseconds); }},

@@ -68,6 +68,25 @@ Vector clamped(const Vector& rates, const Vector& max) {
   return rates.cwiseMax(-max).cwiseMin(max);
 }
 
+// The rotation about body z is that of the weighted yaw alone, the others are those of the tilt.
+void take_apart(FaultyLaw& law) {
+  struct Parts {
+    Quat tilted = cascade::identity<Scalar>();
+    Scalar yaw = 0;
+  };
+  auto parts = std::make_shared<Parts>();
+  auto& stages = law.attitude_unit.attitude;
+  stages.target = [parts](const Quat& tilted, const Quat& yaw) {
+    *parts = {tilted, yaw[3]};
+    return QuaternionStages::Law::target(tilted, yaw);
+  };
+  stages.error = [parts](const Quat& q_WB, const Quat&) {
+    Quat error = QuaternionStages::Law::error(q_WB, parts->tilted);
+    error[3] = parts->yaw;
+    return error;
+  };
+}
+
 const Fault yaw_weight_list[] = {
     {"cascade-yaw-weight-ignored", "yaw_weight", Stage::blend, "corrects the whole yaw error",
      "any yaw error", "a missing weight",
@@ -107,6 +126,26 @@ const Fault yaw_weight_list[] = {
      "a missing step",
      [](FaultyLaw& law) {
        law.attitude_unit.attitude.is_opposite = [](const Quat&) { return true; };
+     }},
+    {"cascade-yaw-weight-of-gains", "yaw_weight", Stage::parameters,
+     "takes the ratio of the yaw gain and the other gains as the weight", "any yaw error",
+     "another version",
+     [](FaultyLaw& law) {
+       change_gains(law.attitude_unit, [](AttitudeUnitGains& gains, const CascadeParameters& p) {
+         const float others = (p.mc_roll_p + p.mc_pitch_p) / 2;
+         gains.attitude.yaw_weight = std::clamp(p.mc_yaw_p / others, 0.0f, 1.0f);
+         gains.attitude.proportional_1_s[2] = others;
+       });
+     }},
+    {"cascade-tilt-and-yaw-apart", "yaw_weight", Stage::blend,
+     "corrects tilt and yaw each for itself, and does not join the two rotations",
+     "an error of tilt and yaw", "a missing step", take_apart},
+    {"cascade-not-reduced-undivided", "yaw_weight", Stage::blend,
+     "corrects the whole error in one rotation, and does not divide the yaw gain by the weight",
+     "a yaw error", "another law",
+     [](FaultyLaw& law) {
+       law.attitude_unit.attitude.is_opposite = [](const Quat&) { return true; };
+       change_yaw_gain(law, [](Scalar gain, Scalar) { return gain; });
      }},
     {"cascade-yaw-gain-undivided", "yaw_weight", Stage::parameters,
      "does not divide the yaw gain by the weight", "any yaw error", "a missing factor",
@@ -171,6 +210,22 @@ const Fault yaw_weight_list[] = {
          return excess > 1 ? Vector(rates / excess) : rates;
        });
      }},
+    {"cascade-limit-ellipse", "rate_limit", Stage::limit,
+     "shortens the vector of the rates to a common ellipse", "a large error of two axes",
+     "another limit",
+     [](FaultyLaw& law) {
+       change_rate_limit(law, [](const Vector& rates, const Vector& max) {
+         const float excess = cascade::length(Vector(rates.cwiseQuotient(max)));
+         return excess > 1 ? Vector(rates / excess) : rates;
+       });
+     }},
+    {"cascade-limit-57.3", "rate_limit", Stage::limit, "takes 180 / pi as 57.3", "a large error",
+     "a rounded constant",
+     [](FaultyLaw& law) {
+       change_rate_limit(law, [](const Vector& rates, const Vector& max) {
+         return clamped(rates, Vector(max * (57.2957795f / 57.3f)));
+       });
+     }},
     {"cascade-limit-in-degrees", "rate_limit", Stage::limit, "takes the limits as rad/s",
      "a large error", "degrees",
      [](FaultyLaw& law) {
@@ -199,6 +254,20 @@ const Fault yaw_weight_list[] = {
 
 // In v1.18 the reference model feeds the yaw rate forward (cascade_model_forward_faults.cpp).
 const Fault yaw_feed_forward_list[] = {
+    {"cascade-yaw-ff-limited", "rate_limit", Stage::feed_forward,
+     "limits the commanded yaw rate before it is added", "a yaw rate beyond the limit",
+     "another limit",
+     [](FaultyLaw& law) {
+       auto max = std::make_shared<Scalar>(0.0f);
+       change_gains(law.attitude_unit, [max](AttitudeUnitGains& gains, const CascadeParameters&) {
+         *max = gains.attitude.rate_max_rad_s[2];
+       });
+       law.attitude_unit.attitude.feed_forward = [max](V rates, const Quat& q_WB, Scalar yaw_rate) {
+         const Scalar limited =
+             std::isfinite(yaw_rate) ? std::clamp(yaw_rate, -*max, *max) : yaw_rate;
+         return QuaternionStages::Law::feed_forward(rates, q_WB, limited);
+       };
+     }},
     {"cascade-yaw-ff-missing", "rate_limit", Stage::feed_forward,
      "does not add the commanded yaw rate", "a yaw rate", "a missing term",
      [](FaultyLaw& law) {

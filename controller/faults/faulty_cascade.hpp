@@ -113,6 +113,7 @@ struct TorqueStages {
   std::function<Vector(const Vector&, const LawGains&)> proportional = Law::proportional;
   std::function<Vector(const Vector&, const LawGains&)> derivative = Law::derivative;
   std::function<Vector(const Vector&, const LawGains&)> feed_forward = Law::feed_forward;
+  std::function<Vector(const Vector&, const Vector&)> in_torque = Law::in_torque;
   std::function<Vector(const Vector&, const Vector&, const Vector&, const Vector&)> torque =
       Law::torque;
   std::function<bool(bool, bool)> may_integrate = Law::may_integrate;

@@ -53,6 +53,7 @@ struct AttitudeStages {
 struct RateStages {
   using Law = mc_att_control::RateStages<Scalar>;
   std::function<Scalar(Scalar, const RateGains&)> throttle_attenuation = Law::throttle_attenuation;
+  std::function<Vector(const Vector&)> setpoint = Law::setpoint;
   std::function<Vector(const Vector&, Scalar, const RateGains&)> proportional = Law::proportional;
   std::function<Vector(const Vector&, const Vector&, Scalar, const RateGains&)> derivative =
       Law::derivative;
@@ -61,6 +62,7 @@ struct RateStages {
       feed_forward_change = Law::feed_forward_change;
   std::function<Vector(const Vector&, const Vector&, const Vector&, const Vector&)> control =
       Law::control;
+  std::function<Vector(const Vector&, const Vector&, const Vector&)> published = Law::published;
   std::function<bool(Scalar, const MotorLimits&)> may_integrate = Law::may_integrate;
   std::function<Vector(const Vector&, Scalar, const RateGains&)> growth = Law::growth;
   std::function<Scalar(Scalar, Scalar, Scalar, Scalar, bool)> integrate_axis = Law::integrate_axis;

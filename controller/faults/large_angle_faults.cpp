@@ -97,6 +97,17 @@ const Fault large_angle_list[] = {
          return Vector(shorter(q) / 2);
        });
      }},
+    {"direct-is-angle", "large_angle", Stage::blend,
+     "takes the rotation vector, not twice the imaginary part", "a tilt error beyond 90 deg",
+     "another error",
+     [](FaultyLaw& law) {
+       change_direct(law, [](const Matrix&, const Matrix&, const Quaternion& q) {
+         const Vector twice = shorter(q);
+         const float sine = twice.norm() / 2;
+         if (sine == 0) return twice;
+         return Vector(twice * (elementary::atan2(sine, std::abs(q.w())) / sine));
+       });
+     }},
     {"direct-longer-way", "large_angle", Stage::blend, "ignores the sign of w",
      "an upset whose error quaternion has w < 0", "quaternion order",
      [](FaultyLaw& law) {

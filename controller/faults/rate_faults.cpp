@@ -49,6 +49,19 @@ const Fault rate_list[] = {
          return Vector(-RateStages::Law::proportional(error, attenuation, gains));
        };
      }},
+    {"rates-setpoint-late", "rates", Stage::input,
+     "controls the rates to the setpoint of the step before", "a setpoint that changes",
+     "one-tick delay",
+     [](FaultyLaw& law) {
+       law.rate.setpoint = [last = Vector(Vector::Zero())](const Vector& rates_sp) mutable {
+         return std::exchange(last, rates_sp);
+       };
+     }},
+    {"i-never", "rates", Stage::i, "has no integral: it stays 0", "an error that lasts",
+     "a missing term",
+     [](FaultyLaw& law) {
+       law.rate.may_integrate = [](float, const MotorLimits&) { return false; };
+     }},
     {"d-on-error", "rates", Stage::d, "takes the derivative of the error",
      "a setpoint that changes", "D on error",
      [](FaultyLaw& law) {
@@ -147,6 +160,13 @@ const Fault rate_list[] = {
        };
        law.rate.control = [growth, dt_s](V p, V d, V i, V ff) {
          return Vector(p + d + i + *growth * *dt_s + ff);
+       };
+     }},
+    {"i-of-this-step", "rates", Stage::i, "publishes the controls with this step's integral",
+     "a rate error", "order of stages",
+     [](FaultyLaw& law) {
+       law.rate.published = [](V control, V before, V after) {
+         return Vector((control - before) + after);
        };
      }},
     {"i-fixed-dt", "rates", Stage::i, "integrates as if every step took 4 ms",

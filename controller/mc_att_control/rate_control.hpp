@@ -61,6 +61,9 @@ struct RateStages {
     return gains.proportional.cwiseProduct(error * attenuation);
   }
 
+  // The setpoint that this step uses: that of the attitude law in the same step.
+  ATTEST_INLINE static Vector setpoint(const Vector& rates_sp) { return rates_sp; }
+
   // D acts on the measured rates, so that a step of the setpoint gives no kick.
   ATTEST_INLINE static Vector derivative(const Vector& rates_prev, const Vector& rates, Scalar dt_s,
                                          const RateGains<Scalar>& gains) {
@@ -81,6 +84,11 @@ struct RateStages {
   ATTEST_INLINE static Vector control(const Vector& p, const Vector& d, const Vector& integral,
                                       const Vector& ff) {
     return ((p + d) + integral) + ff;
+  }
+
+  // The control that is published, with the integrals before and after this step's update.
+  ATTEST_INLINE static Vector published(const Vector& control, const Vector&, const Vector&) {
+    return control;
   }
 
   ATTEST_INLINE static bool may_integrate(Scalar thrust_sp, const MotorLimits& limits) {
@@ -128,7 +136,7 @@ class RateControl {
   const Vector3<Scalar>& integral() const { return integral_; }
 
  private:
-  Vector3<Scalar> feed_forward(const RateInput<Scalar>& in) const;
+  Vector3<Scalar> feed_forward(const Vector3<Scalar>& rates_sp, Scalar dt_s) const;
   Vector3<Scalar> integrate(const Vector3<Scalar>& control, const Vector3<Scalar>& error,
                             const RateInput<Scalar>& in) const;
 
@@ -142,11 +150,9 @@ class RateControl {
 
 template <typename Scalar, typename Stages>
 ATTEST_INLINE Vector3<Scalar> RateControl<Scalar, Stages>::feed_forward(
-    const RateInput<Scalar>& in) const {
-  if (traits_of(profile_).feeds_forward_rates) {
-    return stages_.feed_forward(in.rates_sp_B, gains_);
-  }
-  return stages_.feed_forward_change(in.rates_sp_B, rates_sp_prev_, in.dt_s, gains_);
+    const Vector3<Scalar>& rates_sp, Scalar dt_s) const {
+  if (traits_of(profile_).feeds_forward_rates) return stages_.feed_forward(rates_sp, gains_);
+  return stages_.feed_forward_change(rates_sp, rates_sp_prev_, dt_s, gains_);
 }
 
 template <typename Scalar, typename Stages>
@@ -168,14 +174,16 @@ ATTEST_INLINE Vector3<Scalar> RateControl<Scalar, Stages>::update(const RateInpu
   const Scalar attenuation = traits_of(profile_).attenuates_by_throttle
                                  ? stages_.throttle_attenuation(in.published_thrust_sp, gains_)
                                  : Scalar(1);
-  const Vector3<Scalar> error = in.rates_sp_B - in.rates_B;
+  const Vector3<Scalar> rates_sp = stages_.setpoint(in.rates_sp_B);
+  const Vector3<Scalar> error = rates_sp - in.rates_B;
   const Vector3<Scalar> p = stages_.proportional(error, attenuation, gains_);
   const Vector3<Scalar> d = stages_.derivative(rates_prev_, in.rates_B, in.dt_s, gains_);
-  const Vector3<Scalar> control = stages_.control(p, d, integral_, feed_forward(in));
+  const Vector3<Scalar> control = stages_.control(p, d, integral_, feed_forward(rates_sp, in.dt_s));
   rates_prev_ = in.rates_B;
-  rates_sp_prev_ = in.rates_sp_B;
+  rates_sp_prev_ = rates_sp;
+  const Vector3<Scalar> before = integral_;
   integral_ = integrate(control, error, in);
-  return control;
+  return stages_.published(control, before, integral_);
 }
 
 }  // namespace attest::mc_att_control
