@@ -11,7 +11,7 @@
 
 #include "harness/cli/run_plan.hpp"
 #include "harness/core/interrupt.hpp"
-#include "harness/diagnosis/diagnosis_job.hpp"
+#include "harness/diagnosis/diagnose_run.hpp"
 #include "harness/report/conclusion.hpp"
 #include "harness/report/github.hpp"
 #include "harness/report/terminal.hpp"
@@ -29,35 +29,17 @@ Result<void> write_reports(std::vector<ReportFile>& reports, const Report& repor
 
 // The diagnosis of the failures. An error is printed and does not change verdicts.
 std::optional<Diagnosis> diagnosed(const RunResult& run, const Examined& examined) {
-  JobOptions<VectorDiagnosis> options;
+  DiagnosisOptions options;
   options.processes = examined.jobs;
-  options.in_process = examined.host.in_process;
   options.stop = interrupted;
   HostOptions host = examined.host;
   // That a topic is never published is said already, and must not look like a mistake in the law.
   if (host.said) host.said->lacks.outputs |= never_published_outputs(run.results);
-  const auto vectors = [&](const faults::Fault* partner) {
-    std::vector<VectorSimilarity> similarities;
-    const auto jobs = diagnosis_jobs(examined.cases, run.results, host, partner, run.level);
-    auto outcome = run_jobs(jobs, options);
-    if (!outcome.errors.empty() && !interrupted()) {
-      fmt::print(stderr, "attest: diagnosis: {}\n", outcome.errors.front().to_string());
-    }
-    for (VectorDiagnosis& vector : outcome.results) {
-      if (vector) similarities.push_back(*std::move(vector));
-    }
-    return similarities;
+  options.on_error = [](const Error& error) {
+    if (!interrupted()) fmt::print(stderr, "attest: diagnosis: {}\n", error.to_string());
   };
-  auto diagnosis =
-      diagnose(vectors(nullptr), [&](const faults::Fault& fault) { return vectors(&fault); });
-  if (!interrupted()) {
-    for (const SelectedCase& one : examined.cases) {
-      if (diagnosis && one.the_case.id() == diagnosis->specific_case) {
-        diagnosis->why = one.the_case.why;
-      }
-    }
-    return diagnosis;
-  }
+  auto diagnosis = diagnose_run(run, examined.cases, host, options);
+  if (!interrupted()) return diagnosis;
   // This diagnosis used only some of the vectors. The verdicts are complete.
   fmt::print(stderr, "attest: interrupted; the reports do not have the probable mistake\n");
   forget_interrupt();

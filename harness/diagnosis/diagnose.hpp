@@ -1,5 +1,11 @@
-// Finds the faults of the catalogue that a port's failures resemble. Every fault was run on some
-// vectors that failed, and on some that passed (diagnosis_job.hpp).
+// Lists the mistakes of a failing port: the faults of the catalogue that give its values, and what
+// the deviations have in common that no fault gives.
+//
+// A fault explains an output of a vector if it has the port's value at every tick. Faults are
+// chosen one after the other, each for the outputs that those before it leave. Then all of them act
+// together: so a vector in which several act is explained, too, and a fault that does not belong to
+// them is found out, because the others explain as much without it. The same is repeated with the
+// faults found so far as the law, until no fault explains more.
 #pragma once
 
 #include <cstddef>
@@ -9,35 +15,26 @@
 #include <vector>
 
 #include "controller/faults/fault.hpp"
+#include "harness/diagnosis/pattern.hpp"
 #include "harness/diagnosis/similarity.hpp"
 
 namespace attest {
 
-// A fault whose outputs match the port's.
+// A fault whose outputs are the port's.
 struct Suspect {
   const faults::Fault* fault = nullptr;    // of the catalogue, or port_that_calls() (c_library.hpp)
-  std::size_t matched = 0, ticks = 0;      // it matches `matched` of all ticks of failing vectors
-  std::size_t explained = 0, failing = 0;  // it matches `explained` of the failing vectors wholly
-  std::vector<const faults::Fault*> ambiguity_group;  // at most four, which match equally well
-  const faults::Fault* with = nullptr;  // if not null, the numbers are of both faults together
+  std::size_t explained = 0, failing = 0;  // failing vectors, in whole or in part
+  std::vector<const faults::Fault*> ambiguity_group;  // at most four, which explain the same
 };
 
 struct Diagnosis {
   std::size_t vectors = 0, failing = 0;
-  std::size_t unexplained = 0;  // failing vectors that no suspect matches at every tick
-  // At most three, the best first; empty if together they explain less than half of the failing
-  // vectors. Each suspect explains at least a tenth of the failing vectors that the suspects before
-  // it do not explain. An exception is a pair of suspects, of which the
-  // second has the first as Suspect::with: the first may explain fewer.
-  std::vector<Suspect> suspects;
-  // Stage of the first suspect; without a suspect, of `nearest`. Empty if both are missing.
-  std::optional<faults::Stage> stage;
-  // The fault with the largest Jaccard index, if that is at least a half; else null. In a trial
-  // with the wrong ports of tests/ports/mistakes, most names below a half were wrong.
-  const faults::Fault* nearest = nullptr;
-  // Of `nearest`, 0 to 1: the number of values at which the fault and the port deviate in the same
-  // way, divided by the number of values at which at least one of them deviates.
-  double jaccard_index = 0;
+  // Failing vectors in which all suspects together do not have the port's outputs.
+  std::size_t unexplained = 0;
+  std::vector<Suspect> suspects;     // the one that explains the most first
+  std::vector<Pattern> patterns;     // of the unexplained vectors
+  std::vector<std::string> remarks;  // about the verdicts of the whole run, filled in by the caller
+  std::optional<faults::Stage> stage;  // of the first suspect
   // The stages of the first deviation in most of the failing vectors, and their number.
   StageSet first_stages;
   std::size_t in_first_stages = 0;
@@ -48,19 +45,34 @@ struct Diagnosis {
   std::string why;  // its `why`, filled in by the caller of diagnose()
 };
 
-// Runs the same vectors again, with each fault of the catalogue combined with the given fault.
-using CombinedWith = std::function<std::vector<VectorSimilarity>(const faults::Fault&)>;
+// A vector at the level exact: whether it deviates at the level numeric, and which functions of the
+// C library give the port's outputs.
+struct ExactVector {
+  std::size_t ticks = 0;
+  bool deviates = false;
+  LibraryMatches library;
+  StageSet stages = {};  // of its first deviation
+};
 
-// Empty when no vector fails. At the level exact: if functions of the C library explain half of the
-// failing vectors, the smallest set of them is the only suspect, and no other fault is searched. It
-// must explain all vectors that pass or deviate at the level numeric, so a mistake refutes it.
-// Otherwise a vector fails here if it deviates at the level numeric.
-//
-// If the suspects leave failing vectors unexplained, `combined_with` is called with the fault that
-// explains the most of all failing vectors, unless it explains none. The best combination replaces
-// the suspects if it explains more failing vectors than they do, and a tenth or more of those that
-// this fault leaves unexplained.
-std::optional<Diagnosis> diagnose(const std::vector<VectorSimilarity>& vectors,
-                                  const CombinedWith& combined_with = {});
+// What diagnose() knows about a port. The functions take indices of vectors: the first `failing` of
+// them failed, the others passed.
+struct Evidence {
+  std::size_t failing = 0, passing = 0;
+  // The similarities of the hypotheses on these vectors. Empty if they cannot be computed.
+  std::function<std::vector<VectorSimilarity>(const std::vector<std::size_t>& vectors,
+                                              const std::vector<Hypothesis>&)>
+      compare;
+  // How the port deviates from the hypothesis; may be empty.
+  std::function<std::vector<ObservedVector>(const std::vector<std::size_t>& vectors,
+                                            const Hypothesis&)>
+      observe = {};
+  std::vector<ExactVector> exact = {};  // at the level exact: of each vector
+};
+
+// Empty when no vector deviates. At the level exact: if functions of the C library explain half of
+// the failing vectors, the smallest set of them is the only suspect, and no other fault is
+// searched. It must explain all vectors that pass or deviate at the level numeric, so a mistake
+// refutes it. Otherwise a vector fails here if it deviates at the level numeric.
+std::optional<Diagnosis> diagnose(const Evidence& evidence);
 
 }  // namespace attest

@@ -1,6 +1,7 @@
 #include "harness/diagnosis/diagnose_catalogue.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "harness/casefile/stimulus.hpp"
@@ -99,7 +100,7 @@ Answered answered(const SelectedCase& selected) {
   // A case of the suite, for which the reference has no fault.
   const Trace law =
       reference_outputs(subject, stimulate(selected.the_case, rate_for(selected))).value();
-  Answered vector{answers_of_faults(law, subject), {}};
+  Answered vector{answers_of(each_fault(), law, subject), {}};
   const Outputs right = outputs_of(law);
   for (const Outputs& outputs : vector.faults.distinct) {
     vector.of_distinct.push_back(
@@ -109,6 +110,37 @@ Answered answered(const SelectedCase& selected) {
   }
   vector.faults.distinct.clear();  // some hundred megabytes in all
   return vector;
+}
+
+// Of one fault, or of the law.
+Similarity similarity_in(const VectorSimilarity& vector, const Hypothesis& hypothesis) {
+  if (!hypothesis.empty()) {
+    return vector.similarities[index_in_catalogue(*hypothesis.front())];
+  }
+  Similarity law;
+  law.parted = vector.deviating;
+  law.misfit = vector.misfit;
+  return law;
+}
+
+// One fault is the port, so it explains all, and no faults need to act together.
+Evidence evidence_of(const std::vector<VectorSimilarity>& vectors, std::size_t failing) {
+  Evidence evidence;
+  evidence.failing = failing;
+  evidence.passing = vectors.size() - failing;
+  evidence.compare = [&vectors](const auto& indices, const std::vector<Hypothesis>& hypotheses) {
+    std::vector<VectorSimilarity> found;
+    for (const std::size_t index : indices) {
+      found.push_back(vectors[index]);
+      found.back().similarities.clear();
+      for (const Hypothesis& hypothesis : hypotheses) {
+        if (hypothesis.size() > 1) return std::vector<VectorSimilarity>();
+        found.back().similarities.push_back(similarity_in(vectors[index], hypothesis));
+      }
+    }
+    return found;
+  };
+  return evidence;
 }
 
 }  // namespace
@@ -147,15 +179,17 @@ std::vector<SelfDiagnosis> diagnose_catalogue(const std::vector<SelectedCase>& c
   std::vector<SelfDiagnosis> results;
   for (std::size_t i = 0; i < catalogue.size(); ++i) {
     if (!catalogue[i]->is_detectable(profile)) continue;
-    std::vector<VectorSimilarity> of_fault;
+    std::vector<VectorSimilarity> of_fault, passing;
     std::vector<StageLine> lines;
     for (const Answered& vector : vectors) {
-      const std::size_t index = vector.faults.of_fault[i];
-      of_fault.push_back(of_each_fault(vector.of_distinct[index], vector.faults));
-      const StageSet& stages = of_fault.back().stages;
-      if (stages.any()) lines.push_back(stage_line(catalogue[i]->stage, stages));
+      VectorSimilarity one =
+          of_each_fault(vector.of_distinct[vector.faults.of_fault[i]], vector.faults);
+      if (one.stages.any()) lines.push_back(stage_line(catalogue[i]->stage, one.stages));
+      (one.deviating != 0 ? of_fault : passing).push_back(std::move(one));
     }
-    results.push_back({catalogue[i], diagnose(of_fault), std::move(lines)});
+    const std::size_t failing = of_fault.size();
+    std::move(passing.begin(), passing.end(), std::back_inserter(of_fault));
+    results.push_back({catalogue[i], diagnose(evidence_of(of_fault, failing)), std::move(lines)});
   }
   return results;
 }

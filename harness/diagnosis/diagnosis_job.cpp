@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
+#include <tuple>
 
 #include <nlohmann/json.hpp>
 
@@ -18,21 +20,18 @@
 namespace attest {
 namespace {
 
-// Enough to distinguish the faults of the catalogue, in a second or two.
-constexpr std::size_t most_vectors = 48;
-
-struct Vector {
-  const Case* the_case;
-  Rate rate;
-};
+// All failing cases of a suite of one law, so that each of several mistakes has vectors of its own.
+constexpr std::size_t most_failing = 240;
+// Enough to refute a fault that deviates where the port does not.
+constexpr std::size_t most_passing = 120;
 
 double distance_from_250(const Rate& rate) { return std::abs(std::log(rate.period_s() * 250)); }
 
 // One vector of each open-loop case that is not long: among its results that are `wanted`, the one
 // nearest to 250 Hz.
 template <typename Wanted>
-std::vector<Vector> vectors_of(const std::vector<SelectedCase>& cases,
-                               const std::vector<VectorResult>& results, Wanted wanted) {
+std::vector<DiagnosisVector> vectors_of(const std::vector<SelectedCase>& cases,
+                                        const std::vector<VectorResult>& results, Wanted wanted) {
   std::map<std::string, Rate> nearest;
   for (const VectorResult& result : results) {
     if (result.plant_configuration || !wanted(result)) continue;
@@ -41,7 +40,7 @@ std::vector<Vector> vectors_of(const std::vector<SelectedCase>& cases,
       place->second = result.rate.motor_unit;
     }
   }
-  std::vector<Vector> vectors;
+  std::vector<DiagnosisVector> vectors;
   for (const SelectedCase& selected : cases) {
     const auto found = nearest.find(selected.the_case.id());
     if (found == nearest.end() || is_long(selected.the_case)) continue;
@@ -50,103 +49,201 @@ std::vector<Vector> vectors_of(const std::vector<SelectedCase>& cases,
   return vectors;
 }
 
-void add_spread(const std::vector<Vector>& vectors, const HostOptions& options,
-                const faults::Fault* partner, Level level, Jobs<VectorDiagnosis>& jobs) {
-  const std::size_t count = std::min(vectors.size(), most_vectors);
+// The case without its profile: the same file serves several profiles.
+using CaseName = std::tuple<Module, std::string, std::string>;
+CaseName name_of(const DiagnosisVector& vector) {
+  const Case& the_case = *vector.the_case;
+  return {subject_of(the_case).module, the_case.group, the_case.name};
+}
+
+// Adds up to `most` vectors of cases whose name is not yet in `names`.
+void add_spread(const std::vector<DiagnosisVector>& vectors, std::size_t most, bool failed,
+                std::set<CaseName>& names, std::vector<DiagnosisVector>& result) {
+  std::vector<DiagnosisVector> fresh;
+  for (auto vector = vectors.rbegin(); vector != vectors.rend(); ++vector) {
+    if (names.insert(name_of(*vector)).second) fresh.push_back(*vector);
+  }
+  std::reverse(fresh.begin(), fresh.end());
+  const std::size_t count = std::min(fresh.size(), most);
   for (std::size_t i = 0; i < count; ++i) {
-    const auto& [the_case, rate] = vectors[i * vectors.size() / count];
-    jobs.push_back(std::make_unique<DiagnosisJob>(*the_case, rate, partner, options, level));
+    result.push_back(fresh[i * fresh.size() / count]);
+    result.back().failed = failed;
   }
 }
 
 using nlohmann::json;
 
-// The similarities are rows of numbers without keys, because there are hundreds of faults.
-json to_json(const VectorDiagnosis& diagnosis) {
-  if (!diagnosis) return nullptr;
-  json rows = json::array();
-  for (const Similarity& one : diagnosis->similarities) {
-    rows.push_back({one.matched, one.intersection, one.union_size, one.deviates ? 1 : 0});
+std::string hex_of(const Outputs& outputs) {
+  constexpr const char* digits = "0123456789abcdef";
+  std::string text;
+  text.reserve(2 * outputs_size * outputs.size());
+  for (const Answer& answer : outputs) {
+    for (const std::byte byte : answer.bytes) {
+      const auto value = std::to_integer<unsigned>(byte);
+      text += digits[value >> 4];
+      text += digits[value & 15];
+    }
   }
-  return {{"ticks", diagnosis->ticks},
-          {"deviates", diagnosis->deviates},
-          {"faults", rows},
-          {"stages", diagnosis->stages.to_ulong()},
-          {"case", diagnosis->case_id},
-          {"library", diagnosis->library.with_set},
-          {"single_calls", diagnosis->library.with_single}};
+  return text;
 }
 
-VectorDiagnosis diagnosis_from(const json& in) {
-  if (in.is_null()) return std::nullopt;
-  VectorSimilarity out;
+Outputs outputs_from(const std::string& hex) {
+  const auto value = [](char digit) { return digit <= '9' ? digit - '0' : digit - 'a' + 10; };
+  Outputs outputs(hex.size() / (2 * outputs_size));
+  std::size_t at = 0;
+  for (Answer& answer : outputs) {
+    for (std::byte& byte : answer.bytes) {
+      byte = static_cast<std::byte>(16 * value(hex[at]) + value(hex[at + 1]));
+      at += 2;
+    }
+  }
+  return outputs;
+}
+
+// The similarities are rows of numbers without keys, because there are hundreds of faults.
+json to_json(const VectorComparison& comparison) {
+  const VectorSimilarity& similarity = comparison.similarity;
+  json rows = json::array();
+  for (const Similarity& one : similarity.similarities) {
+    rows.push_back({one.matched, one.same, one.other, one.deviating, one.parted, one.misfit});
+  }
+  return {{"ticks", similarity.ticks},
+          {"deviating", similarity.deviating},
+          {"misfit", similarity.misfit},
+          {"faults", rows},
+          {"stages", similarity.stages.to_ulong()},
+          {"case", similarity.case_id},
+          {"observation", attest::to_json(comparison.observation)}};
+}
+
+VectorComparison comparison_from(const json& in) {
+  VectorComparison comparison;
+  VectorSimilarity& out = comparison.similarity;
   out.ticks = in.at("ticks").get<std::size_t>();
-  out.deviates = in.at("deviates").get<bool>();
+  out.deviating = in.at("deviating").get<OutputMask>();
+  out.misfit = in.at("misfit").get<double>();
   for (const json& row : in.at("faults")) {
     const auto number = [&row](std::size_t i) { return row.at(i).get<std::size_t>(); };
-    out.similarities.push_back({number(0), number(1), number(2), number(3) != 0});
+    out.similarities.push_back({number(0), number(1), number(2), row.at(3).get<OutputMask>(),
+                                row.at(4).get<OutputMask>(), row.at(5).get<double>()});
   }
   out.stages = StageSet(in.at("stages").get<unsigned long>());
   out.case_id = in.at("case").get<std::string>();
-  in.at("library").get_to(out.library.with_set);
-  in.at("single_calls").get_to(out.library.with_single);
+  comparison.observation = observation_from(in.at("observation"));
+  return comparison;
+}
+
+StageSet first_stages(const Trace& law, const Outputs& outputs, const Tolerances& tolerances) {
+  Trace got = law;
+  for (std::size_t tick = 0; tick < outputs.size(); ++tick) {
+    got.samples[tick].copy_outputs(outputs[tick].sample());
+  }
+  Comparison comparison = compare(got, law, tolerances);
+  if (!comparison.first) comparison = compare(got, law, Tolerances(Level::exact));
+  return comparison.first ? stages_of(*comparison.first) : StageSet();
+}
+
+json to_json(const VectorAnswer& answer) {
+  if (!answer) return nullptr;
+  json out = {{"outputs", hex_of(answer->outputs)},
+              {"library", answer->library.with_set},
+              {"single_calls", answer->library.with_single}};
+  if (answer->fraction_bits) out["fraction_bits"] = *answer->fraction_bits;
+  if (answer->fixed_step) out["fixed_step"] = answer->fixed_step->to_string();
   return out;
+}
+
+VectorAnswer answer_from(const json& in) {
+  if (in.is_null()) return std::nullopt;
+  PortAnswer answer{outputs_from(in.at("outputs").get<std::string>())};
+  in.at("library").get_to(answer.library.with_set);
+  in.at("single_calls").get_to(answer.library.with_single);
+  if (in.contains("fraction_bits")) answer.fraction_bits = in.at("fraction_bits").get<int>();
+  if (in.contains("fixed_step")) {
+    answer.fixed_step = *Rate::parse(in.at("fixed_step").get<std::string>());
+  }
+  return answer;
 }
 
 }  // namespace
 
-std::string Codec<VectorDiagnosis>::encode(const Result<VectorDiagnosis>& result) {
-  return attest::encode(result.map([](const VectorDiagnosis& one) { return to_json(one); }));
+std::string Codec<VectorAnswer>::encode(const Result<VectorAnswer>& result) {
+  return attest::encode(result.map([](const VectorAnswer& one) { return to_json(one); }));
 }
 
-Result<VectorDiagnosis> Codec<VectorDiagnosis>::decode(const std::string& text) {
-  return attest::decode(text).map(diagnosis_from);
+Result<VectorAnswer> Codec<VectorAnswer>::decode(const std::string& text) {
+  return attest::decode(text).map(answer_from);
 }
 
-Result<VectorDiagnosis> DiagnosisJob::run(std::size_t) {
+std::string Codec<VectorComparison>::encode(const Result<VectorComparison>& result) {
+  return attest::encode(result.map([](const VectorComparison& one) { return to_json(one); }));
+}
+
+Result<VectorComparison> Codec<VectorComparison>::decode(const std::string& text) {
+  return attest::decode(text).map(comparison_from);
+}
+
+Result<VectorAnswer> PortAnswerJob::run(std::size_t) {
   const auto host = start_host(options_);
   if (!host) return tl::unexpected(host.error());
+  const Case& the_case = *vector_.the_case;
   const Declarations& port = (*host)->declarations();
-  if (marks_declined(port, case_.group)) return std::nullopt;
-  Trace got = inputs_for(port, case_, rate_);
-  auto outputs = reference_outputs(subject_of(case_), got);
-  if (!outputs) return std::nullopt;
-  Trace law = *std::move(outputs);
-  const ModuleUnderTest subject = subject_of(case_);
-  if ((*host)->drive(subject, got)) return std::nullopt;
-  const auto at = [&](Level level) {
-    return tolerances_of(case_, level, port.fraction_bits, law.samples.size());
-  };
-  const bool is_exact = level_ == Level::exact && partner_ == nullptr;
-  auto library = is_exact ? library_matches(got, port, case_, at(level_)) : LibraryMatches();
-  if (!library) return tl::unexpected(library.error());
-  fill_in(port.lacks.outputs, law, got);
-  const Tolerances tolerances = at(Level::numeric);
-  VectorSimilarity found =
-      similarity(outputs_of(got), outputs_of(law), answers_of_faults(law, subject, partner_),
-                 subject.module, tolerances);
-  Comparison comparison = compare(got, law, tolerances);
-  if (is_exact && !comparison.first) comparison = compare(got, law, at(level_));
-  if (comparison.first) found.stages = stages_of(*comparison.first);
-  found.case_id = case_.id();
-  found.library = *std::move(library);
+  if (marks_declined(port, the_case.group)) return std::nullopt;
+  Trace got = inputs_for(port, the_case, vector_.rate);
+  const ModuleUnderTest subject = subject_of(the_case);
+  const auto law = reference_outputs(subject, got);
+  if (!law || (*host)->drive(subject, got)) return std::nullopt;
+  PortAnswer answer;
+  if (level_ == Level::exact) {
+    const Tolerances exact =
+        tolerances_of(the_case, level_, port.fraction_bits, got.samples.size());
+    auto library = library_matches(got, port, the_case, exact);
+    if (!library) return tl::unexpected(library.error());
+    answer.library = *std::move(library);
+  }
+  fill_in(port.lacks.outputs, *law, got);
+  answer.outputs = outputs_of(got);
+  answer.fraction_bits = port.fraction_bits;
+  answer.fixed_step = port.fixed_step;
+  return answer;
+}
+
+Result<VectorComparison> ComparisonJob::run(std::size_t) {
+  const Case& the_case = *vector_.vector.the_case;
+  Declarations port;
+  port.fraction_bits = vector_.fraction_bits;
+  port.fixed_step = vector_.fixed_step;
+  const ModuleUnderTest subject = subject_of(the_case);
+  const auto law = reference_outputs(subject, inputs_for(port, the_case, vector_.vector.rate));
+  if (!law) return tl::unexpected(law.error());
+  const Tolerances tolerances =
+      tolerances_of(the_case, Level::numeric, port.fraction_bits, law->samples.size());
+  const Outputs right = outputs_of(*law);
+  const Outputs& got = vector_.outputs ? *vector_.outputs : right;
+  const FaultAnswers answers = answers_of(hypotheses_, *law, subject);
+  VectorComparison found;
+  found.similarity = similarity(got, right, answers, subject.module, tolerances);
+  found.similarity.case_id = the_case.id();
+  if (vector_.outputs) found.similarity.stages = first_stages(*law, got, tolerances);
+  if (observes_) {
+    found.observation =
+        observe(*law, got, answers.distinct[answers.of_fault.front()], subject, tolerances);
+  }
   return found;
 }
 
-Jobs<VectorDiagnosis> diagnosis_jobs(const std::vector<SelectedCase>& cases,
-                                     const std::vector<VectorResult>& results,
-                                     const HostOptions& options, const faults::Fault* partner,
-                                     Level level) {
+std::vector<DiagnosisVector> diagnosis_vectors(const std::vector<SelectedCase>& cases,
+                                               const std::vector<VectorResult>& results) {
   const auto failed = [](const VectorResult& result) {
     return result.first && fails_a_run(result.verdict);
   };
   const auto passed = [](const VectorResult& result) { return result.verdict == Verdict::pass; };
-  Jobs<VectorDiagnosis> jobs;
-  const auto failing = vectors_of(cases, results, failed);
-  if (failing.empty()) return jobs;
-  add_spread(failing, options, partner, level, jobs);
-  add_spread(vectors_of(cases, results, passed), options, partner, level, jobs);
-  return jobs;
+  std::vector<DiagnosisVector> result;
+  std::set<CaseName> failing_names, passing_names;
+  add_spread(vectors_of(cases, results, failed), most_failing, true, failing_names, result);
+  if (result.empty()) return result;
+  add_spread(vectors_of(cases, results, passed), most_passing, false, passing_names, result);
+  return result;
 }
 
 }  // namespace attest

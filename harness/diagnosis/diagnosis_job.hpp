@@ -1,12 +1,15 @@
-// Runs a port, and every fault of the catalogue, on some vectors of the suite.
+// The vectors of a run on which a diagnosis compares the port with faults, and the jobs for it: one
+// runs the port on a vector, the other compares its outputs with those of faults.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "harness/casefile/select.hpp"
+#include "harness/diagnosis/observation.hpp"
 #include "harness/diagnosis/similarity.hpp"
 #include "harness/host/port_process.hpp"
 #include "harness/verify/port_job.hpp"
@@ -14,46 +17,86 @@
 
 namespace attest {
 
-// Empty when the port declares the case's group as unsupported, or has a fault.
-using VectorDiagnosis = std::optional<VectorSimilarity>;
-
-template <>
-struct Codec<VectorDiagnosis> {
-  static std::string encode(const Result<VectorDiagnosis>& result);
-  static Result<VectorDiagnosis> decode(const std::string& text);
+// What a port answered to a vector that it ran alone.
+struct PortAnswer {
+  Outputs outputs;              // those that a recording lacks are the law's
+  LibraryMatches library = {};  // at the level exact
+  // Declared by the port.
+  std::optional<int> fraction_bits = {};
+  std::optional<Rate> fixed_step = {};
 };
 
-// Runs port and faults on one vector.
-class DiagnosisJob final : public PortJob<VectorDiagnosis> {
+// Empty when the port declares the case's group as unsupported, or has a fault.
+using VectorAnswer = std::optional<PortAnswer>;
+
+template <>
+struct Codec<VectorAnswer> {
+  static std::string encode(const Result<VectorAnswer>& result);
+  static Result<VectorAnswer> decode(const std::string& text);
+};
+
+// A vector of the diagnosis. An open-loop case.
+struct DiagnosisVector {
+  const Case* the_case = nullptr;
+  Rate rate;
+  bool failed = false;  // in the run
+};
+
+// Up to 240 vectors that failed with a deviation, then up to 120 that passed, spread over the
+// suite. One vector of each case, at the rate nearest to 250 Hz; of the same case in several
+// profiles, one that failed. Leaves out flights and long cases. Empty if no vector failed.
+// REQUIRES: `cases` are those that were run, and outlive the result.
+std::vector<DiagnosisVector> diagnosis_vectors(const std::vector<SelectedCase>& cases,
+                                               const std::vector<VectorResult>& results);
+
+// Runs the port on a vector. `level`: of the verdict. REQUIRES: the vector's case outlives this.
+class PortAnswerJob final : public PortJob<VectorAnswer> {
  public:
-  // With a `partner`, each fault is combined with it. `level`: of the verdict. REQUIRES: an
-  // open-loop case, which outlives this.
-  DiagnosisJob(const Case& the_case, const Rate& rate, const faults::Fault* partner,
-               HostOptions options, Level level = Level::numeric)
-      : PortJob(std::move(options)),
-        case_(the_case),
-        rate_(rate),
-        partner_(partner),
-        level_(level) {}
+  PortAnswerJob(DiagnosisVector vector, HostOptions options, Level level = Level::numeric)
+      : PortJob(std::move(options)), vector_(std::move(vector)), level_(level) {}
 
   std::size_t size() const override { return 1; }
-  Result<VectorDiagnosis> run(std::size_t task) override;
+  Result<VectorAnswer> run(std::size_t task) override;
 
  private:
-  const Case& case_;
-  Rate rate_;
-  const faults::Fault* partner_;
+  DiagnosisVector vector_;
   Level level_;
 };
 
-// Jobs for up to 48 vectors that failed with a deviation, and for up to 48 vectors that passed.
-// Takes one failed and one passed vector per case, at the rate nearest to 250 Hz, spread over the
-// suite. Leaves out flights and long cases. No jobs if no vector failed. REQUIRES: `cases` are
-// those that were run, and outlive the jobs.
-Jobs<VectorDiagnosis> diagnosis_jobs(const std::vector<SelectedCase>& cases,
-                                     const std::vector<VectorResult>& results,
-                                     const HostOptions& options,
-                                     const faults::Fault* partner = nullptr,
-                                     Level level = Level::numeric);
+// A vector, and what the port answered. The outputs are null if they are the law's.
+struct AnsweredVector {
+  DiagnosisVector vector;
+  std::shared_ptr<const Outputs> outputs = nullptr;
+  std::optional<int> fraction_bits = {};
+  std::optional<Rate> fixed_step = {};
+};
+
+// The similarities of the hypotheses, and how the port deviates from the first of them.
+struct VectorComparison {
+  VectorSimilarity similarity;
+  Observation observation;  // only if requested
+};
+
+template <>
+struct Codec<VectorComparison> {
+  static std::string encode(const Result<VectorComparison>& result);
+  static Result<VectorComparison> decode(const std::string& text);
+};
+
+class ComparisonJob final : public Job<VectorComparison> {
+ public:
+  // REQUIRES: the arguments outlive this.
+  ComparisonJob(const AnsweredVector& vector, const std::vector<Hypothesis>& hypotheses,
+                bool observes)
+      : vector_(vector), hypotheses_(hypotheses), observes_(observes) {}
+
+  std::size_t size() const override { return 1; }
+  Result<VectorComparison> run(std::size_t task) override;
+
+ private:
+  const AnsweredVector& vector_;
+  const std::vector<Hypothesis>& hypotheses_;
+  bool observes_;
+};
 
 }  // namespace attest

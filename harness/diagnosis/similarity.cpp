@@ -2,19 +2,19 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
-#include <optional>
+#include <map>
+#include <string>
+#include <utility>
 
-#include "harness/compare/tolerance.hpp"
 #include "harness/core/agreement.hpp"
+#include "harness/golden/reference.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/port/fault_port.hpp"
 
 namespace attest {
 namespace {
-
-// A bit for each output of the module; 1 if the output differs.
-using Mask = std::uint32_t;
 
 struct Output {
   Channel channel;
@@ -40,10 +40,10 @@ bool differs(const Output& output, const Sample& a, const Sample& b) {
   return !agree(x, y, output.tolerance.at(y));
 }
 
-Mask difference(const OutputTable& outputs, const Answer& a, const Answer& b) {
+OutputMask difference(const OutputTable& outputs, const Answer& a, const Answer& b) {
   if (a.bytes == b.bytes) return 0;
   const Sample x = a.sample(), y = b.sample();
-  Mask mask = 0, bit = 1;
+  OutputMask mask = 0, bit = 1;
   for (const Output& output : outputs) {
     if (differs(output, x, y)) mask |= bit;
     bit <<= 1;
@@ -51,25 +51,73 @@ Mask difference(const OutputTable& outputs, const Answer& a, const Answer& b) {
   return mask;
 }
 
+// A flag or a value that is not finite has no distance.
+constexpr double most_misfit = 10;
+
+double misfit_of(const Output& output, const Sample& a, const Sample& b) {
+  if (!differs(output, a, b)) return 0;
+  if (output.channel.type != ChannelType::f32) return most_misfit;
+  const double x = float_of(output.channel, a), y = float_of(output.channel, b);
+  const double distance = std::log2(1 + std::abs(x - y) / output.tolerance.at(y));
+  return std::isfinite(distance) ? std::min(distance, most_misfit) : most_misfit;
+}
+
+double misfit(const OutputTable& outputs, const Outputs& a, const Outputs& b) {
+  double sum = 0;
+  for (std::size_t tick = 0; tick < a.size(); ++tick) {
+    if (a[tick].bytes == b[tick].bytes) continue;
+    const Sample x = a[tick].sample(), y = b[tick].sample();
+    for (const Output& output : outputs) sum += misfit_of(output, x, y);
+  }
+  return sum;
+}
+
 Similarity similarity_of(const OutputTable& outputs, const Outputs& port, const Outputs& law,
-                         const Outputs& fault, const std::vector<Mask>& port_deviates) {
+                         const Outputs& fault, const std::vector<OutputMask>& port_deviates) {
   Similarity result;
   for (std::size_t tick = 0; tick < port.size(); ++tick) {
-    const Mask parted = difference(outputs, port[tick], fault[tick]);
+    const OutputMask parted = difference(outputs, port[tick], fault[tick]);
+    const OutputMask fault_deviates = difference(outputs, fault[tick], law[tick]);
     result.matched += parted == 0 ? 1 : 0;
-    const Mask fault_deviates = difference(outputs, fault[tick], law[tick]);
-    result.deviates = result.deviates || fault_deviates != 0;
-    const Mask in_both = port_deviates[tick] & fault_deviates & ~parted;
-    const Mask in_either = port_deviates[tick] | fault_deviates;
-    result.intersection += static_cast<std::size_t>(std::popcount(in_both));
-    result.union_size += static_cast<std::size_t>(std::popcount(in_either));
+    const OutputMask same = port_deviates[tick] & fault_deviates & ~parted;
+    result.same += static_cast<std::size_t>(std::popcount(same));
+    result.other += static_cast<std::size_t>(std::popcount(fault_deviates & parted));
+    result.deviating |= fault_deviates;
+    result.parted |= parted;
   }
+  result.misfit = misfit(outputs, port, fault);
   return result;
+}
+
+Similarity cannot_run(double misfit) {
+  Similarity none;
+  none.parted = ~OutputMask();
+  none.misfit = misfit;
+  return none;
 }
 
 bool same_bytes(const Outputs& a, const Outputs& b) {
   if (a.size() != b.size()) return false;
   return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Answer)) == 0;
+}
+
+// The ids of the faults of the profile's law: "a+b".
+std::string ids_in(const Hypothesis& hypothesis, const std::string& profile) {
+  std::string ids;
+  for (const faults::Fault* fault : hypothesis) {
+    if (!fault->profiles->is_of_law_of(profile)) continue;
+    ids += (ids.empty() ? "" : "+") + std::string(fault->id);
+  }
+  return ids;
+}
+
+// Empty if the faults cannot run.
+Outputs outputs_with(const std::string& ids, Trace given, const ModuleUnderTest& subject) {
+  if (ids.empty()) {
+    const auto law = reference_outputs(subject, std::move(given));
+    return law ? outputs_of(*law) : Outputs{};
+  }
+  return drive(**open_fault(ids), subject, given) ? Outputs{} : outputs_of(given);
 }
 
 }  // namespace
@@ -89,28 +137,35 @@ Outputs outputs_of(const Trace& trace) {
   return outputs;
 }
 
-FaultAnswers answers_of_faults(const Trace& given, const ModuleUnderTest& subject,
-                               const faults::Fault* partner) {
-  FaultAnswers answers;
-  Trace answered = given;
-  // Index of the outputs of faults of another law, which all have the same.
-  std::optional<std::size_t> of_other_law;
+std::vector<Hypothesis> each_fault(const Hypothesis& base) {
+  std::vector<Hypothesis> all;
   for (const faults::Fault* fault : faults::catalogue()) {
-    const bool is_other = !fault->profiles->is_of_law_of(subject.profile);
-    if (is_other && of_other_law) {
-      answers.of_fault.push_back(*of_other_law);
-      continue;
+    all.push_back(base);
+    all.back().push_back(fault);
+  }
+  return all;
+}
+
+std::size_t index_in_catalogue(const faults::Fault& fault) {
+  const auto all = faults::catalogue();
+  return static_cast<std::size_t>(std::find(all.begin(), all.end(), &fault) - all.begin());
+}
+
+FaultAnswers answers_of(std::span<const Hypothesis> hypotheses, const Trace& given,
+                        const ModuleUnderTest& subject) {
+  FaultAnswers answers;
+  std::map<std::string, std::size_t> known_ids;
+  for (const Hypothesis& hypothesis : hypotheses) {
+    const std::string ids = ids_in(hypothesis, subject.profile);
+    const auto [place, is_new] = known_ids.try_emplace(ids);
+    if (is_new) {
+      Outputs outputs = outputs_with(ids, given, subject);
+      const auto known = std::find_if(answers.distinct.begin(), answers.distinct.end(),
+                                      [&](const Outputs& one) { return same_bytes(one, outputs); });
+      place->second = static_cast<std::size_t>(known - answers.distinct.begin());
+      if (known == answers.distinct.end()) answers.distinct.push_back(std::move(outputs));
     }
-    std::string ids(fault->id);
-    if (partner != nullptr) ids += "+" + std::string(partner->id);
-    const auto port = open_fault(ids);
-    const bool done = !drive(**port, subject, answered);
-    Outputs outputs = done ? outputs_of(answered) : Outputs{};
-    const auto known = std::find_if(answers.distinct.begin(), answers.distinct.end(),
-                                    [&](const Outputs& one) { return same_bytes(one, outputs); });
-    answers.of_fault.push_back(static_cast<std::size_t>(known - answers.distinct.begin()));
-    if (is_other) of_other_law = answers.of_fault.back();
-    if (known == answers.distinct.end()) answers.distinct.push_back(std::move(outputs));
+    answers.of_fault.push_back(place->second);
   }
   return answers;
 }
@@ -121,15 +176,16 @@ VectorSimilarity distinct_similarity(const Outputs& port, const Outputs& law,
   const OutputTable outputs = outputs_with(module, tolerances);
   VectorSimilarity result;
   result.ticks = port.size();
-  std::vector<Mask> port_deviates;
+  std::vector<OutputMask> port_deviates;
   for (std::size_t tick = 0; tick < port.size(); ++tick) {
     port_deviates.push_back(difference(outputs, port[tick], law[tick]));
-    result.deviates = result.deviates || port_deviates.back() != 0;
+    result.deviating |= port_deviates.back();
   }
+  result.misfit = misfit(outputs, port, law);
   for (const Outputs& fault : distinct) {
     const bool answered = fault.size() == port.size();
     result.similarities.push_back(answered ? similarity_of(outputs, port, law, fault, port_deviates)
-                                           : Similarity{});
+                                           : cannot_run(result.misfit));
   }
   return result;
 }

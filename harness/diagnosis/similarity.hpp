@@ -1,4 +1,4 @@
-// Computes the similarity of a port and each fault of the catalogue on one vector, for a diagnosis.
+// Compares a port with faults of the catalogue on one vector, value by value, for a diagnosis.
 #pragma once
 
 #include <array>
@@ -16,21 +16,42 @@
 
 namespace attest {
 
-// One fault compared with the port.
+// Faults of the catalogue that act at the same time. Those of another law than the vector's do not
+// act; without a fault, it is the law itself.
+using Hypothesis = std::vector<const faults::Fault*>;
+
+// Each fault of the catalogue, in its order, together with the faults `base`.
+std::vector<Hypothesis> each_fault(const Hypothesis& base = {});
+
+std::size_t index_in_catalogue(const faults::Fault& fault);
+
+// A bit for each output of a module, in the order of channels().
+using OutputMask = std::uint32_t;
+
+// One hypothesis compared with the port.
 struct Similarity {
-  std::size_t matched = 0;       // ticks at which fault and port have the same outputs
-  std::size_t intersection = 0;  // values at which both deviate from the law, and are the same
-  std::size_t union_size = 0;    // values at which at least one deviates from the law
-  bool deviates = false;         // the fault deviates from the law
+  std::size_t matched = 0;  // ticks at which hypothesis and port have the same outputs
+  std::size_t same = 0;     // values at which both deviate from the law, and are the same
+  std::size_t other = 0;    // values at which the hypothesis deviates, and the port has another one
+  OutputMask deviating = 0;  // outputs in which the hypothesis deviates from the law
+  OutputMask parted = 0;     // outputs in which port and hypothesis differ at a tick
+  // The distance of port and hypothesis: the sum of log2(1 + |difference| / tolerance) of all
+  // values, each at most 10. So it counts how near a value is, whatever its size.
+  double misfit = 0;
 };
 
 struct VectorSimilarity {
   std::size_t ticks = 0;
-  bool deviates = false;                 // the port deviates from the law
-  std::vector<Similarity> similarities;  // of each fault, or of each of FaultAnswers::distinct
+  OutputMask deviating = 0;              // outputs in which the port deviates from the law
+  std::vector<Similarity> similarities;  // of each hypothesis, or of each distinct one
   StageSet stages = {};                  // of the port's first deviation (Deviation::stages)
   std::string case_id = {};
-  LibraryMatches library = {};  // at the level exact
+  double misfit = 0;  // of the law (Similarity::misfit)
+
+  // The outputs in which the port deviates, and the hypothesis has the port's value at every tick.
+  OutputMask explained(const Similarity& one) const { return deviating & ~one.parted; }
+  // Those in which the hypothesis deviates, and the port does not.
+  OutputMask contradicted(const Similarity& one) const { return one.deviating & ~deviating; }
 };
 
 // The outputs of all modules in a Sample. Those of modules other than the subject's are zero.
@@ -43,17 +64,16 @@ using Outputs = std::vector<Answer>;  // one per tick
 
 Outputs outputs_of(const Trace& trace);
 
-// The outputs of the faults of the catalogue. On one vector, most faults have the same outputs as
-// the law, so equal outputs are stored once.
+// The outputs of some hypotheses. On one vector, most faults have the same outputs as the law, so
+// equal outputs are stored once.
 struct FaultAnswers {
   std::vector<Outputs> distinct;      // an empty element: of faults that cannot run here
-  std::vector<std::size_t> of_fault;  // index into `distinct`, in the order of the catalogue
+  std::vector<std::size_t> of_fault;  // index into `distinct`, in the order of the hypotheses
 };
 
-// The outputs of each fault for the inputs of `given`. Each fault runs together with `partner`,
-// unless that is null.
-FaultAnswers answers_of_faults(const Trace& given, const ModuleUnderTest& subject,
-                               const faults::Fault* partner = nullptr);
+// The outputs of each hypothesis for the inputs of `given`.
+FaultAnswers answers_of(std::span<const Hypothesis> hypotheses, const Trace& given,
+                        const ModuleUnderTest& subject);
 
 // Compares the port's outputs with each of the distinct outputs, in the channels of `module`.
 // Values are the same if they differ by no more than the tolerances. These are not widened near a
@@ -63,7 +83,7 @@ VectorSimilarity distinct_similarity(const Outputs& port, const Outputs& law,
                                      Module module = Module::mc_att_control,
                                      const Tolerances& tolerances = Tolerances());
 
-// Converts the similarities of the distinct outputs to those of each fault.
+// Converts the similarities of the distinct outputs to those of each hypothesis.
 VectorSimilarity of_each_fault(const VectorSimilarity& distinct, const FaultAnswers& faults);
 
 VectorSimilarity similarity(const Outputs& port, const Outputs& law, const FaultAnswers& faults,

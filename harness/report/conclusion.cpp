@@ -42,13 +42,11 @@ std::string setting(const RunResult& run) {
 
 std::string suspect_text(const Suspect& suspect) {
   const faults::Fault& fault = *suspect.fault;
-  const std::string with =
-      suspect.with ? fmt::format(", together with `{}`", suspect.with->id) : std::string();
   std::string out = fmt::format(
-      "  `{}`{}: {} ({}; in the stage {})\n"
-      "      matches on {} of {} ticks, and on every tick of {} of {}\n",
-      fault.id, with, fault.what, fault.kind, name_of(fault.stage), suspect.matched, suspect.ticks,
-      suspect.explained, counted(suspect.failing, "failing vector"));
+      "  `{}`: {} ({}; in the stage {})\n"
+      "      gives the port's values in {} of {}\n",
+      fault.id, fault.what, fault.kind, name_of(fault.stage), suspect.explained,
+      counted(suspect.failing, "failing vector"));
   if (suspect.ambiguity_group.empty()) return out;
   std::vector<std::string> others;
   for (const faults::Fault* other : suspect.ambiguity_group)
@@ -56,23 +54,19 @@ std::string suspect_text(const Suspect& suspect) {
   return out + fmt::format("      equally well: {}\n", fmt::join(others, ", "));
 }
 
-std::string likeness(const Diagnosis& diagnosis) {
-  if (!diagnosis.suspects.empty()) {
-    std::string out = "it looks like:\n";
-    for (const Suspect& suspect : diagnosis.suspects) out += suspect_text(suspect);
-    return out;
-  }
-  if (diagnosis.nearest == nullptr) {
+std::string suspects_text(const Diagnosis& diagnosis) {
+  if (diagnosis.suspects.empty()) {
+    if (diagnosis.failing == 0) return {};
     return fmt::format(
         "it looks like no fault of the catalogue; {} of {} deviate first in the {}\n",
         diagnosis.in_first_stages, counted(diagnosis.failing, "failing vector"),
         stages_text(diagnosis.first_stages));
   }
-  return fmt::format(
-      "it looks like no fault of the catalogue; the nearest is `{}`\n"
-      "  ({}; in the stage {}), with {:.0f}% of the deviating values in common\n",
-      diagnosis.nearest->id, diagnosis.nearest->what, name_of(*diagnosis.stage),
-      100 * diagnosis.jaccard_index);
+  std::string out = "it looks like:\n";
+  for (const Suspect& suspect : diagnosis.suspects) out += suspect_text(suspect);
+  if (diagnosis.unexplained == 0) return out;
+  return out + fmt::format("together they leave {} of {} unexplained\n", diagnosis.unexplained,
+                           counted(diagnosis.failing, "failing vector"));
 }
 
 }  // namespace
@@ -118,8 +112,22 @@ std::string first_stages(const RunResult& run) {
   return fmt::format("first stage to differ: {}", fmt::join(parts, ", "));
 }
 
+std::string pattern_text(const Pattern& pattern) {
+  std::string what = pattern.relation.empty() ? "deviate" : pattern.relation;
+  if (!pattern.axes.empty()) what = fmt::format("about {} {}", pattern.axes, what);
+  if (!pattern.condition.empty()) what += ", only where " + pattern.condition;
+  return fmt::format("{}: values {}", name_of(pattern.stage), what);
+}
+
 std::string diagnosis_text(const Diagnosis& diagnosis) {
-  std::string out = likeness(diagnosis);
+  std::string out = suspects_text(diagnosis);
+  for (const Pattern& pattern : diagnosis.patterns) {
+    out += fmt::format("  in the {}\n      in {} of the {} {}\n", pattern_text(pattern),
+                       counted(pattern.vectors, "failing vector"),
+                       pattern.groups.size() == 1 ? "group" : "groups",
+                       fmt::join(pattern.groups, ", "));
+  }
+  for (const std::string& remark : diagnosis.remarks) out += remark + "\n";
   if (diagnosis.why.empty()) return out;
   return out + fmt::format(
                    "most specific failing case: {}, which {} of the catalogue would fail\n"

@@ -20,6 +20,9 @@ std::string conclusion_text(const RunResult& run, std::string_view duration = {}
 // stage. Empty without a deviation.
 std::string first_stages(const RunResult& run);
 
+// "rate law: values about yaw have the other sign, only where ..."
+std::string pattern_text(const Pattern& pattern);
+
 // "it looks like:\n  `quat-order-xyzw`: ...", then the most specific failing case; with a newline
 // at its end.
 std::string diagnosis_text(const Diagnosis& diagnosis);

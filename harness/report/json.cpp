@@ -81,21 +81,28 @@ ordered_json diagnosis(const Diagnosis& found) {
                         {"stage", name_of(suspect.fault->stage)},
                         {"what", suspect.fault->what},
                         {"kind", suspect.fault->kind},
-                        {"matched_ticks", suspect.matched},
-                        {"ticks", suspect.ticks},
                         {"explained_vectors", suspect.explained},
                         {"ambiguity_group", others}});
-    if (suspect.with) suspects.back()["with"] = suspect.with->id;
+  }
+  ordered_json patterns = ordered_json::array();
+  for (const Pattern& pattern : found.patterns) {
+    patterns.push_back({{"stage", name_of(pattern.stage)},
+                        {"axes", pattern.axes},
+                        {"relation", pattern.relation},
+                        {"condition", pattern.condition},
+                        {"vectors", pattern.vectors},
+                        {"groups", pattern.groups},
+                        {"text", pattern_text(pattern)}});
   }
   ordered_json out = {
       {"stage", found.stage ? std::string(name_of(*found.stage)) : stages_text(found.first_stages)},
       {"vectors", found.vectors},
       {"failing_vectors", found.failing},
+      {"unexplained_vectors", found.unexplained},
       {"first_stages", attest::names_of(found.first_stages)},
-      {"suspects", suspects}};
-  if (found.nearest) {
-    out["nearest"] = {{"fault", found.nearest->id}, {"jaccard_index", found.jaccard_index}};
-  }
+      {"suspects", suspects},
+      {"patterns", patterns},
+      {"remarks", found.remarks}};
   out["specific_case"] = {
       {"case", found.specific_case}, {"faults", found.shown_by_it}, {"why", one_line(found.why)}};
   return out;

@@ -62,6 +62,41 @@ print(json.load(open("report.json"))["diagnosis"]["specific_case"]["why"])')
   has "first stage to differ: attitude law in "
 }
 
+@test "all mistakes of a port are listed, also those that act everywhere at once" {
+  faults=cascade-rate-dt-fixed+cascade-rates-setpoint-late+cascade-i-of-this-step
+  faults+=+cascade-yaw-ff-on-body-z
+  run "$ATTEST" run --port "fault:$faults" --profile px4-v1.16.0 --rate 250 --json report.json \
+    --group attitude,rate_limit,rates,i_factor,saturation,integral_limit
+  [ "$status" -eq 1 ]
+  for fault in ${faults//+/ }; do has "\`$fault\`: "; done
+  lacks "unexplained"
+  lacks "no fault of the catalogue"
+  python3 - report.json <<'CHECK'
+import json, os, sys
+import jsonschema
+schema = json.load(open(os.environ["SOURCE"] + "/harness/report/report.schema.json"))
+report = json.load(open(sys.argv[1]))
+jsonschema.Draft7Validator(schema).validate(report)
+assert len(report["diagnosis"]["suspects"]) == 4
+assert report["diagnosis"]["unexplained_vectors"] == 0
+CHECK
+}
+
+@test "of a mistake that is in no catalogue the condition is named" {
+  run "$ATTEST" run --port "lib:$PORTS/port_blend_from_100.so" --rate 250 --json report.json \
+    --group large_angle,attitude
+  [ "$status" -eq 1 ]
+  has "in the attitude law: values deviate, only where the tilt error exceeds "
+  python3 - report.json <<'CHECK'
+import json, os, sys
+import jsonschema
+schema = json.load(open(os.environ["SOURCE"] + "/harness/report/report.schema.json"))
+report = json.load(open(sys.argv[1]))
+jsonschema.Draft7Validator(schema).validate(report)
+assert report["diagnosis"]["patterns"][0]["stage"] == "attitude law"
+CHECK
+}
+
 @test "a port that crashes is not diagnosed, and does not end the run" {
   run "$ATTEST" run --port "lib:$PORTS/port_crash.so" --rate 250 --group rates
   [ "$status" -eq 1 ]

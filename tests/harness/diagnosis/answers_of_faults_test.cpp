@@ -41,11 +41,11 @@ const Outputs& of(const char* id, const FaultAnswers& faults) {
 }
 
 bool are_equal(const Outputs& a, const Outputs& b) {
-  return !a.empty() && a.size() == b.size() && !distinct_similarity(a, b, {}).deviates;
+  return !a.empty() && a.size() == b.size() && distinct_similarity(a, b, {}).deviating == 0;
 }
 
 TEST(AnswersOfFaults, AreThoseOfEachFault) {
-  const FaultAnswers faults = answers_of_faults(given(), subject);
+  const FaultAnswers faults = answers_of(each_fault(), given(), subject);
   ASSERT_THAT(faults.of_fault, SizeIs(faults::catalogue().size()));
   const Outputs law = answers(*open_builtin());
   for (const char* const id : {"yaw-weight-dropped", "tpa-missing", "outputs-late"}) {
@@ -58,10 +58,10 @@ TEST(AnswersOfFaults, AreThoseOfEachFault) {
 
 // A worker computes those of many vectors.
 TEST(AnswersOfFaults, DoNotDependOnTheVectorBefore) {
-  const FaultAnswers first = answers_of_faults(given(), subject);
-  answers_of_faults(stimulate(case_of("[control_state]\nroll_rate = -0.7\n"), Rate::hz(250)),
-                    subject);
-  const FaultAnswers second = answers_of_faults(given(), subject);
+  const FaultAnswers first = answers_of(each_fault(), given(), subject);
+  answers_of(each_fault(), stimulate(case_of("[control_state]\nroll_rate = -0.7\n"), Rate::hz(250)),
+             subject);
+  const FaultAnswers second = answers_of(each_fault(), given(), subject);
   ASSERT_EQ(first.of_fault, second.of_fault);
   for (std::size_t i = 0; i < first.distinct.size(); ++i) {
     const Outputs &a = first.distinct[i], &b = second.distinct[i];
@@ -71,7 +71,7 @@ TEST(AnswersOfFaults, DoNotDependOnTheVectorBefore) {
 }
 
 TEST(AnswersOfFaults, ThatAreTheSameAreKeptOnce) {
-  const FaultAnswers faults = answers_of_faults(given(), subject);
+  const FaultAnswers faults = answers_of(each_fault(), given(), subject);
   EXPECT_THAT(faults.distinct, SizeIs(Lt(faults.of_fault.size())));
   for (std::size_t i = 0; i < faults.distinct.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -86,20 +86,28 @@ TEST(AnswersOfFaults, ThatAreTheSameAreKeptOnce) {
 TEST(AnswersOfFaults, OutputsThatAreThereAlreadyDoNotMatter) {
   Trace answered = given();
   EXPECT_FALSE(drive(**open_fault("yaw-reversed"), subject, answered));
-  const FaultAnswers faults = answers_of_faults(answered, subject);
+  const FaultAnswers faults = answers_of(each_fault(), answered, subject);
   EXPECT_TRUE(are_equal(of("tpa-missing", faults), answers(**open_fault("tpa-missing"))));
 }
 
-TEST(AnswersOfFaults, WithAPartnerAreThoseOfTheTwo) {
+TEST(AnswersOfFaults, TogetherWithOthersAreThoseOfAll) {
   const FaultAnswers faults =
-      answers_of_faults(given(), subject, faults::find_fault("tpa-missing"));
+      answers_of(each_fault({faults::find_fault("tpa-missing")}), given(), subject);
   EXPECT_TRUE(are_equal(of("yaw-weight-dropped", faults),
-                        answers(**open_fault("yaw-weight-dropped+tpa-missing"))));
+                        answers(**open_fault("tpa-missing+yaw-weight-dropped"))));
   EXPECT_TRUE(are_equal(of("limits-exchanged", faults), answers(**open_fault("tpa-missing"))));
 }
 
+TEST(AnswersOfFaults, OfAnotherLawAreThoseOfTheLaw) {
+  const FaultAnswers faults = answers_of(each_fault(), given(), subject);
+  EXPECT_TRUE(are_equal(of("cascade-i-never", faults), answers(*open_builtin())));
+  const std::vector<Hypothesis> law{{}};
+  EXPECT_TRUE(
+      are_equal(answers_of(law, given(), subject).distinct.front(), answers(*open_builtin())));
+}
+
 TEST(AnswersOfFaults, OfAProfileThatTheyDoNotDoAreEmpty) {
-  const FaultAnswers faults = answers_of_faults(given(), {"px4-v0"});
+  const FaultAnswers faults = answers_of(each_fault(), given(), {"px4-v0"});
   EXPECT_THAT(of("tpa-missing", faults), IsEmpty());
   EXPECT_THAT(of("yaw-weight-dropped", faults), IsEmpty());
 }

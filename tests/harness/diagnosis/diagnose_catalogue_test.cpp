@@ -68,26 +68,14 @@ TEST(DiagnoseCatalogue, AFaultIsNamedByTheCaseThatShowsIt) {
   EXPECT_FALSE(hidden.is_stage_named());
 }
 
-TEST(DiagnoseCatalogue, ACaseIsOneVectorAt250HzWhereItHasThat) {
-  for (const std::vector<int>& rates :
-       {std::vector<int>{100, 250, 1000}, {250, 1000}, {1000, 100, 250}}) {
+TEST(DiagnoseCatalogue, ACaseIsOneVectorAtOneOfItsRates) {
+  for (const std::vector<int>& rates : {std::vector<int>{100, 250, 1000}, {250, 1000}, {1000}}) {
     Cases cases;
     cases.add("loud", attenuated, rates);
     const auto diagnosis = of("tpa-missing", diagnose_catalogue(cases, newest)).diagnosis;
     ASSERT_TRUE(diagnosis);
     EXPECT_EQ(diagnosis->vectors, 1u);
-    ASSERT_FALSE(diagnosis->suspects.empty());
-    EXPECT_EQ(diagnosis->suspects.front().ticks, 5u);
   }
-}
-
-TEST(DiagnoseCatalogue, AtAnotherRateWhereItHasNot) {
-  Cases cases;
-  cases.add("loud", attenuated, {1000});
-  const auto diagnosis = of("tpa-missing", diagnose_catalogue(cases, newest)).diagnosis;
-  ASSERT_TRUE(diagnosis);
-  ASSERT_FALSE(diagnosis->suspects.empty());
-  EXPECT_EQ(diagnosis->suspects.front().ticks, 20u);
 }
 
 // ---- what is named ------------------------------------------------------------------------------

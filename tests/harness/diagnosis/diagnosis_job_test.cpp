@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -39,71 +39,90 @@ const Similarity& of_fault(const VectorSimilarity& vector, std::string_view id) 
 
 // ---- one vector ---------------------------------------------------------------------------------
 
-class DiagnosisJobTest : public testing::Test {
+class PortAnswerTest : public testing::Test {
  protected:
-  DiagnosisJobTest() { suite_.add_unblessed("tilted", tilted_and_loud); }
+  PortAnswerTest() { suite_.add_unblessed("tilted", tilted_and_loud); }
 
-  Result<VectorDiagnosis> run(const HostOptions& port, const faults::Fault* partner = nullptr) {
-    return DiagnosisJob(suite_[0], Rate::hz(250), partner, port).run(0);
+  Result<VectorAnswer> run(const HostOptions& port, Level level = Level::numeric) {
+    return PortAnswerJob({&suite_[0], Rate::hz(250), true}, port, level).run(0);
+  }
+  // The similarities of each fault with the port.
+  VectorComparison compared(const HostOptions& port, const Hypothesis& base = {},
+                            bool observes = false, std::size_t the_case = 0) {
+    const DiagnosisVector vector{&suite_[the_case], Rate::hz(250), true};
+    const auto answer = PortAnswerJob(vector, port).run(0);
+    EXPECT_TRUE(answer && *answer);
+    const AnsweredVector answered{vector, std::make_shared<const Outputs>((*answer)->outputs),
+                                  (*answer)->fraction_bits, (*answer)->fixed_step};
+    return ComparisonJob(answered, each_fault(base), observes).run(0).value();
   }
 
   SmallSuite suite_;
 };
 
-TEST_F(DiagnosisJobTest, TheFaultThatThePortHasMatchesItAtEveryTick) {
+TEST_F(PortAnswerTest, TheFaultThatThePortHasMatchesItAtEveryTick) {
   for (const bool in_process : {true, false}) {
     HostOptions port = here("fault:tpa-missing");
     port.in_process = in_process;
-    const auto found = run(port);
-    ASSERT_TRUE(found && *found);
-    EXPECT_EQ((*found)->ticks, 30u);
-    EXPECT_TRUE((*found)->deviates);
-    EXPECT_THAT((*found)->similarities, SizeIs(faults::catalogue().size()));
-    const Similarity& own = of_fault(**found, "tpa-missing");
+    const VectorSimilarity found = compared(port).similarity;
+    EXPECT_EQ(found.ticks, 30u);
+    EXPECT_NE(found.deviating, 0u);
+    EXPECT_TRUE(found.stages.any());
+    EXPECT_THAT(found.similarities, SizeIs(faults::catalogue().size()));
+    const Similarity& own = of_fault(found, "tpa-missing");
     EXPECT_EQ(own.matched, 30u);
-    EXPECT_GE(own.intersection, 30u);
-    EXPECT_EQ(own.intersection, own.union_size);
-    EXPECT_EQ(of_fault(**found, "yaw-weight-dropped").matched, 0u);
+    EXPECT_EQ(own.parted, 0u);
+    EXPECT_GE(own.same, 30u);
+    EXPECT_EQ(own.other, 0u);
+    EXPECT_EQ(of_fault(found, "yaw-weight-dropped").matched, 0u);
   }
 }
 
-TEST_F(DiagnosisJobTest, ARightPortDoesNotDeviate) {
-  const auto found = run(here("builtin"));
-  ASSERT_TRUE(found && *found);
-  EXPECT_FALSE((*found)->deviates);
-  EXPECT_EQ(of_fault(**found, "limits-exchanged").matched, 30u) << "as the law does";
-  EXPECT_EQ(of_fault(**found, "tpa-missing").matched, 0u);
-  EXPECT_EQ(of_fault(**found, "tpa-missing").intersection, 0u);
+TEST_F(PortAnswerTest, ARightPortDoesNotDeviate) {
+  const VectorSimilarity found = compared(here("builtin")).similarity;
+  EXPECT_EQ(found.deviating, 0u);
+  EXPECT_EQ(of_fault(found, "limits-exchanged").matched, 30u) << "as the law does";
+  EXPECT_EQ(of_fault(found, "tpa-missing").matched, 0u);
+}
+
+TEST_F(PortAnswerTest, WithoutOutputsTheVectorHasThoseOfTheLaw) {
+  const AnsweredVector vector{{&suite_[0], Rate::hz(250), false}};
+  const std::vector<Hypothesis> hypotheses{{}, {faults::find_fault("tpa-missing")}};
+  const auto found = ComparisonJob(vector, hypotheses, false).run(0).value().similarity;
+  EXPECT_EQ(found.deviating, 0u);
+  EXPECT_EQ(found.similarities[0].parted, 0u);
+  EXPECT_NE(found.similarities[1].deviating, 0u);
 }
 
 // The same tolerances as for the verdict: a vector that passed must not count as failed here.
-TEST_F(DiagnosisJobTest, TheTolerancesAreThoseOfTheCaseAndThePort) {
+TEST_F(PortAnswerTest, TheTolerancesAreThoseOfTheCaseAndThePort) {
   const char* const wide =
       "[tolerance]\nwhy = \"x\"\nactuator_controls_0 = { absolute = 9 }\n"
       "mc_att_ctrl_status = { absolute = 9 }\n";
   suite_.add_unblessed("wide", std::string(tilted_and_loud) + wide);
-  const auto found =
-      DiagnosisJob(suite_[1], Rate::hz(250), nullptr, here("fault:tpa-missing")).run(0);
-  ASSERT_TRUE(found && *found);
-  EXPECT_FALSE((*found)->deviates);
+  EXPECT_EQ(compared(here("fault:tpa-missing"), {}, false, 1).similarity.deviating, 0u);
 }
 
-TEST_F(DiagnosisJobTest, WithAPartnerEachFaultIsTriedTogetherWithIt) {
+TEST_F(PortAnswerTest, EachFaultIsTriedTogetherWithTheOthers) {
   const HostOptions both = here("fault:yaw-weight-dropped+tpa-missing");
-  const auto alone = run(both);
-  const auto together = run(both, faults::find_fault("tpa-missing"));
-  ASSERT_TRUE(alone && *alone && together && *together);
-  EXPECT_EQ(of_fault(**alone, "yaw-weight-dropped").matched, 0u);
-  EXPECT_EQ(of_fault(**alone, "tpa-missing").matched, 0u);
-  EXPECT_EQ(of_fault(**together, "yaw-weight-dropped").matched, 30u);
-  EXPECT_EQ(of_fault(**together, "limits-exchanged").matched, 0u);
+  const VectorSimilarity alone = compared(both).similarity;
+  const VectorSimilarity together = compared(both, {faults::find_fault("tpa-missing")}).similarity;
+  EXPECT_EQ(of_fault(alone, "yaw-weight-dropped").matched, 0u);
+  EXPECT_EQ(of_fault(together, "yaw-weight-dropped").matched, 30u);
+  EXPECT_EQ(of_fault(together, "limits-exchanged").matched, 0u);
+}
+
+// The first hypothesis is what the port is expected to do.
+TEST_F(PortAnswerTest, DeviationsAreObservedIfRequested) {
+  const HostOptions port = here("fault:tpa-missing");
+  const Observation found = compared(port, {faults::find_fault("yaw-reversed")}, true).observation;
+  EXPECT_GT(found.at({Stage::rate_law, 0}).all.deviating, 0u);
+  EXPECT_TRUE(compared(port).observation.empty());
 }
 
 // This case calls atan2 alone, whose results some libraries round correctly.
-TEST_F(DiagnosisJobTest, AtTheLevelExactTheCallsOfTheCLibraryAreTried) {
-  const auto found = [&](const char* port, Level level) {
-    return DiagnosisJob(suite_[0], Rate::hz(250), nullptr, here(port), level).run(0).value();
-  };
+TEST_F(PortAnswerTest, AtTheLevelExactTheCallsOfTheCLibraryAreTried) {
+  const auto found = [&](const char* port, Level level) { return run(here(port), level).value(); };
   const LibraryMatches right = found("builtin", Level::exact)->library;
   ASSERT_THAT(right.with_set, SizeIs(library_call_sets));
   constexpr LibraryCalls atan2f = 1 << 5;
@@ -119,7 +138,7 @@ TEST_F(DiagnosisJobTest, AtTheLevelExactTheCallsOfTheCLibraryAreTried) {
   EXPECT_THAT(found("builtin", Level::numeric)->library.with_set, IsEmpty());
 }
 
-TEST_F(DiagnosisJobTest, APortThatGoesWrongHasNoDiagnosis) {
+TEST_F(PortAnswerTest, APortThatGoesWrongHasNoAnswer) {
   HostOptions hangs = host_of("builtin");
   hangs.hangs = "no answer";
   for (const HostOptions& port : {here(test_port("step_fails")), hangs}) {
@@ -129,56 +148,43 @@ TEST_F(DiagnosisJobTest, APortThatGoesWrongHasNoDiagnosis) {
   }
 }
 
-TEST_F(DiagnosisJobTest, APortThatCannotBeOpenedIsAnError) {
+TEST_F(PortAnswerTest, APortThatCannotBeOpenedIsAnError) {
   EXPECT_FALSE(run(here("fault:unheard-of")));
 }
 
-TEST_F(DiagnosisJobTest, AGroupThatThePortDeclinesHasNoDiagnosis) {
+TEST_F(PortAnswerTest, AGroupThatThePortDeclinesHasNoAnswer) {
   Case tailsitter = suite_[0];
   const HostOptions port = here(test_port("no_tailsitter"));
-  const auto ran = [&] { return DiagnosisJob(tailsitter, Rate::hz(250), nullptr, port).run(0); };
+  const auto ran = [&] { return PortAnswerJob({&tailsitter, Rate::hz(250), true}, port).run(0); };
   EXPECT_TRUE(*ran());
   tailsitter.group = "tailsitter";
   EXPECT_FALSE(*ran());
 }
 
 // The first dt of such a port is its period; other ports start with the longest dt.
-TEST_F(DiagnosisJobTest, APortWithAFixedStepIsGivenTheCaseFromOnePeriodOn) {
-  const auto right = run(here(test_port("fixed_step")));
-  ASSERT_TRUE(right && *right);
-  EXPECT_FALSE((*right)->deviates);
-  const auto wrong = run(here(test_port("fixed_step_gain_off")));
-  ASSERT_TRUE(wrong && *wrong);
-  EXPECT_TRUE((*wrong)->deviates);
+TEST_F(PortAnswerTest, APortWithAFixedStepIsGivenTheCaseFromOnePeriodOn) {
+  EXPECT_EQ(compared(here(test_port("fixed_step"))).similarity.deviating, 0u);
+  EXPECT_NE(compared(here(test_port("fixed_step_gain_off"))).similarity.deviating, 0u);
 }
 
-TEST(DiagnosisCodec, AResultComesBackAsItWas) {
-  const auto back = [](const Result<VectorDiagnosis>& result) {
-    return Codec<VectorDiagnosis>::decode(Codec<VectorDiagnosis>::encode(result));
+TEST(DiagnosisCodec, AnAnswerComesBackAsItWas) {
+  const auto back = [](const Result<VectorAnswer>& result) {
+    return Codec<VectorAnswer>::decode(Codec<VectorAnswer>::encode(result));
   };
-  for (const bool deviates : {true, false}) {
-    const StageSet stages = only(Stage::sticks) | only(Stage::actuators);
-    const auto one = back(VectorSimilarity{30,
-                                           deviates,
-                                           {{1, 2, 3}, {4, 5, 6, true}},
-                                           stages,
-                                           "modes/acro",
-                                           {{7, 8}, {{"expf@decay", 9}}}});
-    ASSERT_TRUE(one && *one);
-    EXPECT_EQ((*one)->ticks, 30u);
-    EXPECT_EQ((*one)->deviates, deviates);
-    ASSERT_THAT((*one)->similarities, SizeIs(2));
-    const Similarity& last = (*one)->similarities[1];
-    EXPECT_THAT((std::array{last.matched, last.intersection, last.union_size}),
-                ElementsAre(4, 5, 6));
-    EXPECT_TRUE(last.deviates);
-    EXPECT_FALSE((*one)->similarities[0].deviates);
-    EXPECT_EQ((*one)->stages, stages);
-    EXPECT_EQ((*one)->case_id, "modes/acro");
-    EXPECT_THAT((*one)->library.with_set, ElementsAre(7, 8));
-    EXPECT_THAT((*one)->library.with_single, ElementsAre(Pair("expf@decay", 9u)));
+  PortAnswer answer{Outputs(2), {{7, 8}, {{"expf@decay", 9}}}, 20, Rate::hz(1000, 3)};
+  for (std::size_t i = 0; i < outputs_size; ++i) {
+    answer.outputs[1].bytes[i] = static_cast<std::byte>(i);
   }
-  const auto none = back(VectorDiagnosis());
+  const auto one = back(VectorAnswer(answer));
+  ASSERT_TRUE(one && *one);
+  ASSERT_THAT((*one)->outputs, SizeIs(2));
+  EXPECT_EQ((*one)->outputs[0].bytes, answer.outputs[0].bytes);
+  EXPECT_EQ((*one)->outputs[1].bytes, answer.outputs[1].bytes);
+  EXPECT_THAT((*one)->library.with_set, ElementsAre(7, 8));
+  EXPECT_THAT((*one)->library.with_single, ElementsAre(Pair("expf@decay", 9u)));
+  EXPECT_EQ((*one)->fraction_bits, 20);
+  EXPECT_EQ((*one)->fixed_step, Rate::hz(1000, 3));
+  const auto none = back(VectorAnswer());
   ASSERT_TRUE(none);
   EXPECT_FALSE(*none);
   const auto error = back(fail("no port"));
@@ -186,150 +192,34 @@ TEST(DiagnosisCodec, AResultComesBackAsItWas) {
   EXPECT_EQ(error.error().message, "no port");
 }
 
-// ---- which vectors ------------------------------------------------------------------------------
-
-// Cases of 20 ms, so the number of ticks gives the rate: 2 at 100 Hz, 5 at 250 Hz, 160 at 8 kHz.
-class DiagnosisJobsTest : public testing::Test {
- protected:
-  void add_case(const std::string& name, Span duration = {0.02, Span::In::seconds}) {
-    Case the_case = level_;
-    the_case.name = name;
-    the_case.duration = duration;
-    cases_.push_back({std::move(the_case), {}});
-  }
-  VectorResult& add_result(const std::string& name, int hz, Verdict verdict) {
-    VectorResult result;
-    result.profile = level_.profile;
-    result.group = level_.group;
-    result.name = name;
-    result.rate = Rate::hz(hz);
-    result.verdict = verdict;
-    if (verdict != Verdict::pass) result.first.emplace();
-    results_.push_back(std::move(result));
-    return results_.back();
-  }
-  // Cases of 1, 2, 3, ... ticks, all at 250 Hz.
-  void add_cases(const std::string& name, int count, Verdict verdict) {
-    for (int i = 1; i <= count; ++i) {
-      add_case(fmt::format("{}_{}", name, i), {static_cast<double>(i), Span::In::ticks});
-      add_result(cases_.back().the_case.name, 250, verdict);
-    }
-  }
-
-  Jobs<VectorDiagnosis> jobs(const faults::Fault* partner = nullptr) const {
-    return diagnosis_jobs(cases_, results_, here("fault:tpa-missing"), partner);
-  }
-  std::vector<std::size_t> ticks_of_jobs() const {
-    std::vector<std::size_t> ticks;
-    for (const auto& job : jobs()) ticks.push_back(ticks_of(*job));
-    return ticks;
-  }
-  static std::size_t ticks_of(Job<VectorDiagnosis>& job) { return job.run(0).value()->ticks; }
-
-  SmallSuite suite_;
-  Case level_ = [this] {
-    suite_.add_unblessed("level", "");
-    return suite_[0];
-  }();
-  std::vector<SelectedCase> cases_;
-  std::vector<VectorResult> results_;
-};
-
-TEST_F(DiagnosisJobsTest, WhereNothingFailsNothingIsRun) {
-  add_case("a");
-  add_result("a", 250, Verdict::pass);
-  EXPECT_THAT(jobs(), IsEmpty());
-}
-
-TEST_F(DiagnosisJobsTest, ACaseIsRunAtItsRateNearestTo250Hz) {
-  for (auto rates : std::vector<std::vector<int>>{
-           {100, 250, 8000}, {8000, 250, 100}, {250, 8000, 100}, {100, 8000, 250}}) {
-    cases_.clear();
-    results_.clear();
-    add_case("a");
-    for (const int hz : rates) add_result("a", hz, Verdict::fail);
-    EXPECT_THAT(ticks_of_jobs(), ElementsAre(5)) << rates[0];
-  }
-}
-
-TEST_F(DiagnosisJobsTest, TheRateIsOneThatFailed) {
-  add_case("a");
-  add_result("a", 8000, Verdict::fail);
-  add_result("a", 100, Verdict::fail);
-  add_result("a", 250, Verdict::skip);
-  EXPECT_THAT(ticks_of_jobs(), ElementsAre(2));
-}
-
-TEST_F(DiagnosisJobsTest, AsManyThatPassedAreRunAtTheirRateNearestTo250Hz) {
-  add_case("good");
-  add_case("bad", {3, Span::In::ticks});
-  for (const int hz : {8000, 250, 100}) add_result("good", hz, Verdict::pass);
-  add_result("bad", 250, Verdict::fail);
-  EXPECT_THAT(ticks_of_jobs(), ElementsAre(3, 5));
-}
-
-TEST_F(DiagnosisJobsTest, OnlyAFailureWithAValueIsOne) {
-  for (const Verdict verdict : {Verdict::xfail, Verdict::skip, Verdict::unsupported}) {
-    add_case(std::string(name_of(verdict)));
-    add_result(cases_.back().the_case.name, 250, verdict);
-  }
-  add_case("dies");
-  add_result("dies", 250, Verdict::crash).first.reset();
-  EXPECT_THAT(jobs(), IsEmpty());
-  add_case("rubbish", {7, Span::In::ticks});
-  add_result("rubbish", 250, Verdict::non_finite);
-  EXPECT_THAT(ticks_of_jobs(), ElementsAre(7));
-}
-
-TEST_F(DiagnosisJobsTest, FlightsAreLeftOut) {
-  add_case("a");
-  add_result("a", 250, Verdict::fail).plant_configuration.emplace();
-  EXPECT_THAT(jobs(), IsEmpty());
-}
-
-// Running the whole catalogue on a long case takes long.
-TEST_F(DiagnosisJobsTest, LongCasesAreLeftOut) {
-  add_case("long", {5000, Span::In::ticks});
-  add_result("long", 250, Verdict::fail);
-  EXPECT_THAT(jobs(), IsEmpty());
-}
-
-TEST_F(DiagnosisJobsTest, FewAreRunAllInTheOrderOfTheCases) {
-  add_cases("bad", 5, Verdict::fail);
-  std::reverse(results_.begin(), results_.end());
-  EXPECT_THAT(ticks_of_jobs(), ElementsAre(1, 2, 3, 4, 5));
-}
-
-// Each job runs the whole catalogue, so only some vectors are run. Their spread is checked at the
-// first, the middle and the last.
-TEST_F(DiagnosisJobsTest, OfManyThatFailSomeAreRunThatAreSpreadOverTheCorpus) {
-  add_cases("bad", 200, Verdict::fail);
-  const auto all = jobs();
-  ASSERT_GE(all.size(), 10u);
-  ASSERT_LE(all.size(), 100u) << "in a second or two";
-  EXPECT_LE(ticks_of(*all.front()), 20u);
-  EXPECT_NEAR(static_cast<double>(ticks_of(*all[all.size() / 2])), 100, 20);
-  EXPECT_GE(ticks_of(*all.back()), 180u);
-}
-
-TEST_F(DiagnosisJobsTest, OfManyThatPassSomeAreRunThatAreSpreadOverTheCorpus) {
-  add_cases("bad", 60, Verdict::fail);
-  add_cases("good", 200, Verdict::pass);
-  const auto all = jobs();
-  ASSERT_GE(all.size(), 20u);
-  ASSERT_LE(all.size(), 160u) << "in a second or two";
-  EXPECT_GE(ticks_of(*all.back()), 180u);
-}
-
-TEST_F(DiagnosisJobsTest, EachTriesTheFaultsTogetherWithThePartner) {
-  suite_.add_unblessed("tilted", tilted_and_loud);
-  cases_.push_back({suite_[1], {}});
-  add_result("tilted", 250, Verdict::fail);
-  const auto alone = jobs();
-  const auto together = jobs(faults::find_fault("tpa-missing"));
-  ASSERT_THAT(together, SizeIs(1));
-  EXPECT_EQ(of_fault(*alone[0]->run(0).value(), "limits-exchanged").matched, 0u);
-  EXPECT_EQ(of_fault(*together[0]->run(0).value(), "limits-exchanged").matched, 30u);
+TEST(DiagnosisCodec, AComparisonComesBackAsItWas) {
+  VectorComparison sent;
+  sent.similarity = {
+      30, 5, {{1, 2, 3, 4, 6, 0.5}, {7, 8, 9, 10, 11, 12}}, only(Stage::sticks), "modes/acro", 1.5};
+  Observed& observed = sent.observation[{Stage::rate_law, 2}];
+  observed.all = {3, 4};
+  observed.where = {{"it is the first step", {1, 2}}};
+  observed.relations.values = 3;
+  observed.relations.quotient_to = 0.25;
+  const auto one = Codec<VectorComparison>::decode(Codec<VectorComparison>::encode(sent)).value();
+  EXPECT_EQ(one.similarity.ticks, 30u);
+  EXPECT_EQ(one.similarity.deviating, 5u);
+  EXPECT_EQ(one.similarity.misfit, 1.5);
+  EXPECT_EQ(one.similarity.stages, only(Stage::sticks));
+  EXPECT_EQ(one.similarity.case_id, "modes/acro");
+  ASSERT_THAT(one.similarity.similarities, SizeIs(2));
+  const Similarity& last = one.similarity.similarities[1];
+  EXPECT_THAT((std::array{last.matched, last.same, last.other}), ElementsAre(7, 8, 9));
+  EXPECT_EQ(last.deviating, 10u);
+  EXPECT_EQ(last.parted, 11u);
+  EXPECT_EQ(last.misfit, 12);
+  const Observed& back = one.observation.at({Stage::rate_law, 2});
+  EXPECT_EQ(back.all.deviating, 3u);
+  ASSERT_THAT(back.where, SizeIs(1));
+  EXPECT_EQ(back.where[0].first, "it is the first step");
+  EXPECT_EQ(back.where[0].second.agreeing, 2u);
+  EXPECT_EQ(back.relations.values, 3u);
+  EXPECT_EQ(back.relations.quotient_to, 0.25);
 }
 
 }  // namespace

@@ -1,11 +1,14 @@
-// Handmade similarities: vectors of 10 ticks, the failing ones first.
+// A port made by hand, for tests of the search: each fault adds numbers to some outputs of some
+// vectors of one tick, and a port is a sum of faults and of mistakes that are no fault.
 #pragma once
 
-#include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstddef>
-#include <initializer_list>
+#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -14,80 +17,92 @@
 
 namespace attest {
 
-inline constexpr std::size_t ticks = 10;
-
 // Faults of three stages, in the order of the catalogue.
 inline constexpr const char* tilt_fault = "tilt-in-world";
 inline constexpr const char* yaw_fault = "yaw-weight-dropped";
 inline constexpr const char* tpa_fault = "tpa-missing";
 
-inline std::size_t index_of(const char* id) {
-  const auto all = faults::catalogue();
-  const auto found = std::find(all.begin(), all.end(), faults::find_fault(id));
-  EXPECT_NE(found, all.end()) << id;
-  return static_cast<std::size_t>(found - all.begin());
-}
-
 class HandMade {
  public:
-  // At first no fault matches any tick.
-  HandMade(std::size_t failing, std::size_t passing) {
-    VectorSimilarity vector;
-    vector.ticks = ticks;
-    vector.similarities.resize(faults::catalogue().size());
-    vector.deviates = true;
-    vectors_.assign(failing, vector);
-    vector.deviates = false;
-    vectors_.insert(vectors_.end(), passing, vector);
-    for (std::size_t i = 0; i < vectors_.size(); ++i) {
-      vectors_[i].case_id = "case " + std::to_string(i);
-    }
-  }
+  static constexpr std::size_t outputs = 4;
+  using Vector = std::array<double, outputs>;
 
-  Similarity& of(const char* id, std::size_t vector) {
-    return vectors_.at(vector).similarities[index_of(id)];
-  }
-  // The fault matches `matched` ticks in each of the vectors from `first` to before `end`.
-  HandMade& matches(const char* id, std::size_t first, std::size_t end,
-                    std::size_t matched = ticks) {
-    for (std::size_t vector = first; vector < end; ++vector) of(id, vector).matched = matched;
+  // Vectors of which the first ones failed.
+  HandMade(std::size_t failing, std::size_t passing)
+      : failing_(failing), passing_(passing), port_(failing + passing) {}
+
+  // The fault adds `value` to an output of the vectors from `first` to before `end`.
+  HandMade& acts(std::string_view fault, std::size_t first, std::size_t end, std::size_t output,
+                 double value) {
+    std::vector<Vector>& effect = effects_[fault];
+    effect.resize(failing_ + passing_);
+    for (std::size_t v = first; v < end; ++v) effect.at(v).at(output) += value;
     return *this;
   }
-  // Numbers of values of a vector that deviate: in both port and fault, or in either.
-  HandMade& deviates(const char* id, std::size_t vector, std::size_t both, std::size_t either) {
-    of(id, vector).intersection = both;
-    of(id, vector).union_size = either;
+  // The port has this fault.
+  HandMade& has(std::string_view fault) {
+    for (std::size_t v = 0; v < port_.size(); ++v) add(effects_.at(fault)[v], port_[v]);
     return *this;
   }
-
-  // The stages of the port's first deviation.
+  // The port has a mistake that is no fault.
+  HandMade& differs(std::size_t first, std::size_t end, std::size_t output, double value) {
+    for (std::size_t v = first; v < end; ++v) port_.at(v).at(output) += value;
+    return *this;
+  }
   HandMade& deviates_first(std::size_t vector, const StageSet& stages) {
-    vectors_.at(vector).stages = stages;
+    stages_[vector] = stages;
     return *this;
   }
 
-  // These sets of calls of the C library give the port's outputs.
-  HandMade& explained_by(std::size_t vector, std::initializer_list<LibraryCalls> sets) {
-    for (const LibraryCalls calls : sets) {
-      matches_with(vector, calls, ticks);
-    }
-    return *this;
+  Evidence evidence() const {
+    Evidence evidence;
+    evidence.failing = failing_;
+    evidence.passing = passing_;
+    evidence.compare = [this](const auto& vectors, const auto& hypotheses) {
+      std::vector<VectorSimilarity> all;
+      for (const std::size_t v : vectors) all.push_back(compared(v, hypotheses));
+      return all;
+    };
+    return evidence;
   }
-  // With these calls, the reference has the port's outputs at `matched` ticks.
-  HandMade& matches_with(std::size_t vector, LibraryCalls calls, std::size_t matched) {
-    vectors_.at(vector).library.with_set.resize(library_call_sets);
-    vectors_.at(vector).library.with_set[calls] = matched;
-    return *this;
-  }
-  HandMade& matches_with(std::size_t vector, const LibraryCall& single, std::size_t matched) {
-    vectors_.at(vector).library.with_single[single] = matched;
-    return *this;
-  }
-
-  operator const std::vector<VectorSimilarity>&() const { return vectors_; }
+  std::optional<Diagnosis> diagnosed() const { return diagnose(evidence()); }
 
  private:
-  std::vector<VectorSimilarity> vectors_;
+  static void add(const Vector& effect, Vector& sum) {
+    for (std::size_t i = 0; i < outputs; ++i) sum[i] += effect[i];
+  }
+
+  VectorSimilarity compared(std::size_t v, const std::vector<Hypothesis>& hypotheses) const {
+    VectorSimilarity vector;
+    vector.ticks = 1;
+    vector.case_id = "case " + std::to_string(v);
+    if (stages_.contains(v)) vector.stages = stages_.at(v);
+    for (std::size_t i = 0; i < outputs; ++i) {
+      if (port_[v][i] != 0) vector.deviating |= 1U << i;
+      vector.misfit += std::log2(1 + std::abs(port_[v][i]));
+    }
+    for (const Hypothesis& hypothesis : hypotheses) {
+      Vector sum{};
+      for (const faults::Fault* fault : hypothesis) {
+        const auto effect = effects_.find(fault->id);
+        if (effect != effects_.end()) add(effect->second[v], sum);
+      }
+      Similarity one;
+      for (std::size_t i = 0; i < outputs; ++i) {
+        if (sum[i] != 0) one.deviating |= 1U << i;
+        if (sum[i] != port_[v][i]) one.parted |= 1U << i;
+        one.misfit += std::log2(1 + std::abs(sum[i] - port_[v][i]));
+      }
+      one.matched = one.parted == 0 ? 1 : 0;
+      vector.similarities.push_back(one);
+    }
+    return vector;
+  }
+
+  std::size_t failing_, passing_;
+  std::map<std::string_view, std::vector<Vector>> effects_;
+  std::vector<Vector> port_;
+  std::map<std::size_t, StageSet> stages_;
 };
 
 inline std::vector<std::string_view> ids_of(const std::vector<const faults::Fault*>& faults) {

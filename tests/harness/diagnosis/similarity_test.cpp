@@ -11,7 +11,6 @@
 namespace attest {
 namespace {
 
-using testing::Each;
 using testing::ElementsAre;
 using testing::Field;
 using testing::SizeIs;
@@ -36,7 +35,7 @@ Answer rates(float roll, float pitch = 0, float yaw = 0) {
 const Answer zero = rates(0);
 
 bool are_same(const Answer& port, const Answer& law, Module module = Module::mc_att_control) {
-  return !distinct_similarity({port}, {law}, {}, module).deviates;
+  return distinct_similarity({port}, {law}, {}, module).deviating == 0;
 }
 
 // The similarity of one fault.
@@ -80,18 +79,18 @@ bool passes(std::size_t channel, double got, double want) {
 TEST(Similarity, APortThatAnswersAsTheLawDoesNotDeviate) {
   const Outputs law{rates(1), rates(2), rates(3)};
   const VectorSimilarity same = distinct_similarity(law, law, {});
-  EXPECT_FALSE(same.deviates);
+  EXPECT_EQ(same.deviating, 0u);
   EXPECT_EQ(same.ticks, 3u);
   EXPECT_THAT(same.similarities, SizeIs(0));
 }
 
 TEST(Similarity, AVectorThatDeviatesInItsFirstTickFails) {
-  EXPECT_TRUE(distinct_similarity({rates(1), zero, zero}, {zero, zero, zero}, {}).deviates);
+  EXPECT_NE(distinct_similarity({rates(1), zero, zero}, {zero, zero, zero}, {}).deviating, 0u);
 }
 
 TEST(Similarity, AVectorThatDeviatesInAnyOtherTickFails) {
-  EXPECT_TRUE(distinct_similarity({zero, rates(1), zero}, {zero, zero, zero}, {}).deviates);
-  EXPECT_TRUE(distinct_similarity({zero, zero, rates(1)}, {zero, zero, zero}, {}).deviates);
+  EXPECT_NE(distinct_similarity({zero, rates(1), zero}, {zero, zero, zero}, {}).deviating, 0u);
+  EXPECT_NE(distinct_similarity({zero, zero, rates(1)}, {zero, zero, zero}, {}).deviating, 0u);
 }
 
 TEST(Similarity, NanIsTheSameAsNanOnly) {
@@ -163,38 +162,42 @@ TEST(Similarity, AValueIsInBothWhereBothDeviateInTheSameWay) {
   // Roll in both; pitch of the port; yaw of the fault.
   const Similarity one = similarity_of_one({rates(1, 0, 3)}, {rates(1, 2, 0)}, {zero});
   EXPECT_EQ(one.matched, 0u);
-  EXPECT_EQ(one.intersection, 1u);
-  EXPECT_EQ(one.union_size, 3u);
+  EXPECT_EQ(one.same, 1u);
+  EXPECT_EQ(one.other, 1u);
 }
 
 TEST(Similarity, AnotherValueAtTheSamePlaceIsNotInBoth) {
   const Similarity one = similarity_of_one({rates(5)}, {rates(1)}, {zero});
-  EXPECT_EQ(one.intersection, 0u);
-  EXPECT_EQ(one.union_size, 1u);
+  EXPECT_EQ(one.same, 0u);
+  EXPECT_EQ(one.other, 1u);
 }
 
 TEST(Similarity, KnowsWhetherTheFaultDeviates) {
-  EXPECT_TRUE(similarity_of_one({rates(1), zero}, {zero, zero}, {zero, zero}).deviates);
-  EXPECT_FALSE(similarity_of_one({zero, zero}, {rates(1), zero}, {zero, zero}).deviates);
+  const Similarity does = similarity_of_one({rates(1), zero}, {zero, zero}, {zero, zero});
+  EXPECT_NE(does.deviating, 0u);
+  EXPECT_EQ(does.deviating, does.parted);
+  const Similarity not_it = similarity_of_one({zero, zero}, {rates(1), zero}, {zero, zero});
+  EXPECT_EQ(not_it.deviating, 0u);
+  EXPECT_NE(not_it.parted, 0u);
 }
 
 TEST(Similarity, OtherValuesAreNotInBothThoughTheyAreAsMany) {
   const Similarity one = similarity_of_one({rates(0, 0, 1)}, {rates(1)}, {zero});
-  EXPECT_EQ(one.intersection, 0u);
-  EXPECT_EQ(one.union_size, 2u);
+  EXPECT_EQ(one.same, 0u);
+  EXPECT_EQ(one.other, 1u);
 }
 
 TEST(Similarity, TheSameValueAtAnotherTickIsNotInBoth) {
   const Similarity one = similarity_of_one({zero, rates(1)}, {rates(1), zero}, {zero, zero});
-  EXPECT_EQ(one.intersection, 0u);
-  EXPECT_EQ(one.union_size, 2u);
+  EXPECT_EQ(one.same, 0u);
+  EXPECT_EQ(one.other, 1u);
 }
 
 TEST(Similarity, ValuesAreCountedAtEachTick) {
   const Outputs both{rates(1, 1, 1), rates(1), zero};
   const Similarity one = similarity_of_one(both, both, {zero, zero, zero});
-  EXPECT_EQ(one.intersection, 4u);
-  EXPECT_EQ(one.union_size, 4u);
+  EXPECT_EQ(one.same, 4u);
+  EXPECT_EQ(one.other, 0u);
 }
 
 TEST(Similarity, EveryOutputIsAValueOfItsOwn) {
@@ -206,8 +209,8 @@ TEST(Similarity, EveryOutputIsAValueOfItsOwn) {
       const Similarity one =
           similarity_of_one({answer_with(of_fault, 1)}, {answer_with(of_port, 1)},
                             {answer_with(of_port, 0)}, of_port.module);
-      EXPECT_EQ(one.intersection, same ? 1u : 0u) << of_port.name << ", " << of_fault.name;
-      EXPECT_EQ(one.union_size, same ? 1u : 2u) << of_port.name << ", " << of_fault.name;
+      EXPECT_EQ(one.same, same ? 1u : 0u) << of_port.name << ", " << of_fault.name;
+      EXPECT_EQ(one.other, same ? 0u : 1u) << of_port.name << ", " << of_fault.name;
     }
   }
 }
@@ -215,19 +218,37 @@ TEST(Similarity, EveryOutputIsAValueOfItsOwn) {
 TEST(Similarity, AFaultThatDoesNotAnswerMatchesNothing) {
   const Similarity one = similarity_of_one({}, {zero, rates(1)}, {zero, zero});
   EXPECT_EQ(one.matched, 0u);
-  EXPECT_EQ(one.intersection, 0u);
+  EXPECT_EQ(one.same, 0u);
+  EXPECT_EQ(one.parted, ~OutputMask());
+  EXPECT_GT(one.misfit, 0);
 }
 
 TEST(Similarity, EachFaultIsLikeItsAnswers) {
   const Outputs law{zero, zero}, other{zero, rates(1)};
   const FaultAnswers faults{{law, other}, {1, 0, 1}};
   const VectorSimilarity all = similarity(other, law, faults);
-  EXPECT_TRUE(all.deviates);
+  EXPECT_NE(all.deviating, 0u);
   EXPECT_EQ(all.ticks, 2u);
   EXPECT_THAT(all.similarities,
               ElementsAre(Field(&Similarity::matched, 2u), Field(&Similarity::matched, 1u),
                           Field(&Similarity::matched, 2u)));
-  EXPECT_THAT(all.similarities, Each(Field(&Similarity::union_size, 1u)));
+  EXPECT_NE(all.explained(all.similarities[0]), 0u);
+  EXPECT_EQ(all.explained(all.similarities[1]), 0u);
+  EXPECT_EQ(all.contradicted(all.similarities[0]), 0u);
+}
+
+// An error of 2e-4 rad/s is the tolerance, and 1 bit; each further bit is twice as far.
+TEST(Similarity, TheMisfitCountsHowNearAValueIs) {
+  const auto misfit = [](float fault) {
+    return similarity_of_one({rates(fault)}, {zero}, {zero}).misfit;
+  };
+  EXPECT_EQ(misfit(0), 0);
+  EXPECT_NEAR(misfit(7 * 2e-4f), 3, 1e-3);
+  EXPECT_EQ(misfit(1000), 10);
+  EXPECT_EQ(misfit(nan), 10);
+  const Similarity two = similarity_of_one({rates(1, 1)}, {zero}, {zero});
+  EXPECT_DOUBLE_EQ(two.misfit, 20);
+  EXPECT_DOUBLE_EQ(distinct_similarity({rates(1)}, {zero}, {}).misfit, 10);
 }
 
 TEST(Similarity, OutputsAreThoseOfEachTick) {

@@ -26,13 +26,43 @@ TEST(DiagnosisText, WithoutALikeFaultHasTheStageOnly) {
             "rate law or the integrator\n");
 }
 
-TEST(DiagnosisText, HasTheNearestFaultWithItsShare) {
+TEST(DiagnosisText, ListsEachMistakeAndWhatNoneExplains) {
   Diagnosis diagnosis = unlike_every_fault();
-  diagnosis.nearest = faults::find_fault("yaw-reversed");
-  diagnosis.stage = diagnosis.nearest->stage;
-  diagnosis.jaccard_index = 0.63;
-  EXPECT_THAT(diagnosis_text(diagnosis), HasSubstr("the nearest is `yaw-reversed`\n"));
-  EXPECT_THAT(diagnosis_text(diagnosis), HasSubstr("63% of the deviating values in common\n"));
+  diagnosis.suspects = {
+      {faults::find_fault("yaw-reversed"), 4, 9, {}},
+      {faults::find_fault("tpa-missing"), 2, 9, {faults::find_fault("tpa-on-d")}}};
+  diagnosis.unexplained = 3;
+  Pattern pattern;
+  pattern.stage = Stage::integrator;
+  pattern.axes = "yaw";
+  pattern.relation = "are 0";
+  pattern.condition = "the vehicle <lands>";
+  pattern.vectors = 3;
+  pattern.groups = {"anti_windup", "modes"};
+  diagnosis.patterns = {pattern};
+  diagnosis.remarks = {"its instances share state"};
+  const std::string text = diagnosis_text(diagnosis);
+  EXPECT_THAT(text, testing::StartsWith("it looks like:\n  `yaw-reversed`: "));
+  EXPECT_THAT(text, HasSubstr("      gives the port's values in 4 of 9 failing vectors\n"));
+  EXPECT_THAT(text, HasSubstr("      equally well: `tpa-on-d`\n"));
+  EXPECT_THAT(text, HasSubstr("together they leave 3 of 9 failing vectors unexplained\n"
+                              "  in the integrator: values about yaw are 0, only where the "
+                              "vehicle <lands>\n"
+                              "      in 3 failing vectors of the groups anti_windup, modes\n"
+                              "its instances share state\n"));
+  EXPECT_THAT(html_report({sample_run(), diagnosis, {}}), HasSubstr("the vehicle &lt;lands&gt;"));
+}
+
+TEST(DiagnosisText, OfAnUnknownMistakeHasWhatItsDeviationsHaveInCommon) {
+  Diagnosis diagnosis = unlike_every_fault();
+  Pattern pattern;
+  pattern.stage = Stage::sticks;
+  pattern.vectors = 1;
+  pattern.groups = {"sticks"};
+  diagnosis.patterns = {pattern};
+  EXPECT_THAT(diagnosis_text(diagnosis),
+              testing::EndsWith("  in the sticks: values deviate\n"
+                                "      in 1 failing vector of the group sticks\n"));
 }
 
 TEST(DiagnosisText, EndsWithThePurposeOfTheMostSpecificCase) {

@@ -1,0 +1,98 @@
+// Whether the suspects of a search belong together: all of them act at once, and all but each one.
+#include <algorithm>
+
+#include "harness/diagnosis/search.hpp"
+
+namespace attest {
+namespace {
+
+// The share of the places where a suspect acts at which all suspects together must have the port's
+// values. Otherwise it may be a mistake that is like the fault under some conditions only.
+constexpr double least_confirmed = 0.5;
+
+// A suspect that explains so many vectors may have more places that hold a second mistake, too.
+constexpr double enough_needed = 3, least_confirmed_often = 0.15;
+
+// The share of the vectors where a suspect acts in which the others may be nearer to the port
+// without it. At first it is larger, because other mistakes are not found yet.
+constexpr double most_farther = 0.15, most_farther_at_first = 0.5;
+
+}  // namespace
+
+// Of similarities of all suspects, and then of all but each one: the suspect that the others refute
+// most; empty if they refute none.
+std::optional<std::size_t> Search::worst_suspect(const std::vector<VectorSimilarity>& together,
+                                                 bool at_last) const {
+  std::optional<std::size_t> worst;
+  double largest = 0;
+  for (std::size_t i = 0; i < suspects_.size(); ++i) {
+    const std::size_t fault = index_in_catalogue(*suspects_[i].fault);
+    double acting = 0, confirmed = 0, nearer = 0, farther = 0, needed = 0;
+    for (std::size_t v = 0; v < together.size(); ++v) {
+      const VectorSimilarity& vector = together[v];
+      const Similarity& all = vector.similarities.front();
+      const Similarity& without = vector.similarities[i + 1];
+      const OutputMask places = alone_[v].similarities[fault].deviating;
+      if (places == 0) continue;
+      acting += weight(places, vector);
+      confirmed += weight(places & ~all.parted, vector);
+      needed += weight(~all.parted & without.parted & vector.deviating, vector);
+      nearer += all.misfit < without.misfit ? 1 : 0;
+      farther += all.misfit > without.misfit ? 1 : 0;
+    }
+    const double share = acting == 0 ? 0 : confirmed / acting;
+    const bool is_doubtful =
+        share < (needed < enough_needed ? least_confirmed : least_confirmed_often);
+    const bool is_refuted =
+        needed == 0 ||
+        farther > (at_last ? most_farther : most_farther_at_first) * (nearer + farther) ||
+        (at_last && is_doubtful);
+    const double refutation = 1 - share + farther / std::max(1.0, nearer + farther);
+    if (!is_refuted || refutation < largest) continue;
+    largest = refutation;
+    worst = i;
+  }
+  return worst;
+}
+
+// Lets all suspects act together, and drops those that the others refute, one at a time. Returns
+// false if they cannot act together.
+bool Search::confirm(bool at_last) {
+  while (!suspects_.empty()) {
+    std::vector<Hypothesis> hypotheses{all_suspects()};
+    for (std::size_t i = 0; i < suspects_.size(); ++i) {
+      hypotheses.push_back(all_suspects());
+      hypotheses.back().erase(hypotheses.back().begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    const auto together = evidence_.compare(failing_, hypotheses);
+    if (together.size() != failing_.size()) return false;
+    for (std::size_t v = 0; v < together.size(); ++v) {
+      const Similarity& one = together[v].similarities.front();
+      left_[v] = (together[v].deviating | one.deviating) & one.parted;
+    }
+    const auto worst = worst_suspect(together, at_last);
+    if (!worst) {
+      count_explained(together);
+      return true;
+    }
+    const auto place = suspects_.begin() + static_cast<std::ptrdiff_t>(*worst);
+    refuted_[index_in_catalogue(*place->fault)] = true;
+    suspects_.erase(place);
+  }
+  for (std::size_t v = 0; v < left_.size(); ++v) left_[v] = alone_[v].deviating;
+  return true;
+}
+
+// Counts the vectors of which each suspect explains a part.
+void Search::count_explained(const std::vector<VectorSimilarity>& together) {
+  for (std::size_t i = 0; i < suspects_.size(); ++i) {
+    std::size_t& explained = suspects_[i].explained = 0;
+    for (const VectorSimilarity& vector : together) {
+      const OutputMask needed = ~vector.similarities.front().parted &
+                                vector.similarities[i + 1].parted & vector.deviating;
+      explained += needed != 0 ? 1 : 0;
+    }
+  }
+}
+
+}  // namespace attest

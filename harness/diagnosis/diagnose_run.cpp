@@ -1,0 +1,134 @@
+#include "harness/diagnosis/diagnose_run.hpp"
+
+#include <memory>
+#include <utility>
+
+#include "harness/diagnosis/diagnosis_job.hpp"
+#include "harness/diagnosis/remarks.hpp"
+
+namespace attest {
+namespace {
+
+// The vectors of a diagnosis, and the jobs that compare them.
+class Laboratory {
+ public:
+  Laboratory(const HostOptions& host, const DiagnosisOptions& options, Level level)
+      : host_(host), options_(options), level_(level) {}
+
+  // Runs the port on the vectors that failed; at the level exact also on those that passed, because
+  // their last bits matter.
+  void run_port(const std::vector<DiagnosisVector>& vectors);
+  // The results are in the order of `vectors`. Empty after an error.
+  std::vector<VectorComparison> compare(const std::vector<std::size_t>& vectors,
+                                        const std::vector<Hypothesis>& hypotheses, bool observes);
+  Evidence evidence();
+
+ private:
+  template <typename R>
+  std::vector<R> results_of(const Jobs<R>& jobs, bool in_process);
+
+  const HostOptions& host_;
+  const DiagnosisOptions& options_;
+  Level level_;
+  std::vector<AnsweredVector> vectors_;
+  std::vector<LibraryMatches> library_;  // of each vector, at the level exact
+  std::size_t failing_ = 0;
+};
+
+template <typename R>
+std::vector<R> Laboratory::results_of(const Jobs<R>& jobs, bool in_process) {
+  JobOptions<R> options;
+  options.processes = options_.processes;
+  options.in_process = in_process;
+  options.stop = options_.stop;
+  auto outcome = run_jobs(jobs, options);
+  if (!outcome.errors.empty()) options_.on_error(outcome.errors.front());
+  return std::move(outcome.results);
+}
+
+void Laboratory::run_port(const std::vector<DiagnosisVector>& vectors) {
+  Jobs<VectorAnswer> jobs;
+  std::vector<DiagnosisVector> asked;
+  for (const DiagnosisVector& vector : vectors) {
+    if (!vector.failed && level_ != Level::exact) continue;
+    jobs.push_back(std::make_unique<PortAnswerJob>(vector, host_, level_));
+    asked.push_back(vector);
+  }
+  const auto answers = results_of(jobs, host_.in_process);
+  if (answers.size() != asked.size()) return;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    if (!answers[i]) continue;
+    vectors_.push_back({asked[i], std::make_shared<const Outputs>(answers[i]->outputs),
+                        answers[i]->fraction_bits, answers[i]->fixed_step});
+    library_.push_back(answers[i]->library);
+    failing_ += asked[i].failed ? 1 : 0;
+  }
+  if (vectors_.empty() || level_ == Level::exact) return;
+  for (const DiagnosisVector& vector : vectors) {
+    if (vector.failed) continue;
+    vectors_.push_back(
+        {vector, nullptr, vectors_.front().fraction_bits, vectors_.front().fixed_step});
+  }
+}
+
+std::vector<VectorComparison> Laboratory::compare(const std::vector<std::size_t>& vectors,
+                                                  const std::vector<Hypothesis>& hypotheses,
+                                                  bool observes) {
+  Jobs<VectorComparison> jobs;
+  for (const std::size_t index : vectors) {
+    jobs.push_back(std::make_unique<ComparisonJob>(vectors_[index], hypotheses, observes));
+  }
+  auto results = results_of(jobs, host_.in_process);
+  if (results.size() != vectors.size()) results.clear();
+  return results;
+}
+
+Evidence Laboratory::evidence() {
+  Evidence evidence;
+  evidence.failing = failing_;
+  evidence.passing = vectors_.size() - failing_;
+  evidence.compare = [this](const auto& vectors, const auto& hypotheses) {
+    std::vector<VectorSimilarity> similarities;
+    for (VectorComparison& one : compare(vectors, hypotheses, false)) {
+      similarities.push_back(std::move(one.similarity));
+    }
+    return similarities;
+  };
+  evidence.observe = [this](const auto& vectors, const Hypothesis& hypothesis) {
+    std::vector<ObservedVector> observed;
+    auto results = compare(vectors, {hypothesis}, true);
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      observed.push_back(
+          {vectors_[vectors[i]].vector.the_case->group, std::move(results[i].observation)});
+    }
+    return observed;
+  };
+  if (level_ != Level::exact) return evidence;
+  std::vector<std::size_t> all;
+  for (std::size_t i = 0; i < vectors_.size(); ++i) all.push_back(i);
+  const auto numeric = compare(all, {Hypothesis{}}, false);
+  for (std::size_t i = 0; i < numeric.size(); ++i) {
+    const VectorSimilarity& one = numeric[i].similarity;
+    evidence.exact.push_back({one.ticks, one.deviating != 0, library_[i], one.stages});
+  }
+  return evidence;
+}
+
+}  // namespace
+
+std::optional<Diagnosis> diagnose_run(const RunResult& run, const std::vector<SelectedCase>& cases,
+                                      const HostOptions& host, const DiagnosisOptions& options) {
+  Laboratory laboratory(host, options, run.level);
+  laboratory.run_port(diagnosis_vectors(cases, run.results));
+  std::optional<Diagnosis> diagnosis = diagnose(laboratory.evidence());
+  std::vector<std::string> remarks = remarks_on(run.results);
+  if (!diagnosis && remarks.empty()) return std::nullopt;
+  if (!diagnosis) diagnosis.emplace();
+  diagnosis->remarks = std::move(remarks);
+  for (const SelectedCase& one : cases) {
+    if (one.the_case.id() == diagnosis->specific_case) diagnosis->why = one.the_case.why;
+  }
+  return diagnosis;
+}
+
+}  // namespace attest

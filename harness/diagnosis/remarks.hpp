@@ -1,0 +1,15 @@
+// Mistakes that the verdicts of a run show, without the port's values.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/verify/verdict.hpp"
+
+namespace attest {
+
+// Sentences about the port, for people: its instances share state; it has the step of one rate;
+// only its flights fail.
+std::vector<std::string> remarks_on(const std::vector<VectorResult>& results);
+
+}  // namespace attest
