@@ -95,7 +95,7 @@ int conclude(const RunResult& run, const Examined& examined, const ReportOptions
   std::optional<Diagnosis> diagnosis;
   if (!run.suite_reference.empty()) {
     fmt::print(stderr, "attest: note: {}\n", own_law_only);
-  } else if (options.diagnose && run.failed() && run.parameters.empty()) {
+  } else if (options.diagnose && run.failed()) {
     diagnosis = diagnosed(run, examined);
   }
   // Before the summary is printed: if the reader of stdout closes the pipe early, SIGPIPE ends this

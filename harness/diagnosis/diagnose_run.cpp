@@ -1,10 +1,13 @@
 #include "harness/diagnosis/diagnose_run.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
+#include "harness/casefile/stimulus.hpp"
 #include "harness/diagnosis/diagnosis_job.hpp"
 #include "harness/diagnosis/remarks.hpp"
+#include "harness/verify/declared_lacks.hpp"
 
 namespace attest {
 namespace {
@@ -47,12 +50,18 @@ std::vector<R> Laboratory::results_of(const Jobs<R>& jobs, bool in_process) {
 }
 
 void Laboratory::run_port(const std::vector<DiagnosisVector>& vectors) {
+  // A program may need seconds to start. A library runs each vector alone.
+  const std::size_t most_together = kind_of(host_.port).is_program ? 48 : 1;
   Jobs<VectorAnswer> jobs;
   std::vector<DiagnosisVector> asked;
   for (const DiagnosisVector& vector : vectors) {
-    if (!vector.failed && level_ != Level::exact) continue;
-    jobs.push_back(std::make_unique<PortAnswerJob>(vector, host_, level_));
-    asked.push_back(vector);
+    if (vector.failed || level_ == Level::exact) asked.push_back(vector);
+  }
+  for (auto begin = asked.begin(); begin != asked.end();) {
+    const auto left = static_cast<std::size_t>(asked.end() - begin);
+    const auto end = begin + static_cast<std::ptrdiff_t>(std::min(left, most_together));
+    jobs.push_back(std::make_unique<PortAnswerJob>(std::vector(begin, end), host_, level_));
+    begin = end;
   }
   const auto answers = results_of(jobs, host_.in_process);
   if (answers.size() != asked.size()) return;
@@ -114,12 +123,24 @@ Evidence Laboratory::evidence() {
   return evidence;
 }
 
+// The parameters with which the run judged the vector.
+std::vector<ParameterChange> parameters_of(const RunResult& run, const DiagnosisVector& vector) {
+  std::vector<ParameterChange> parameters = run.parameters;
+  if (run.lacks.constants.empty()) return parameters;
+  VectorResult ignored;
+  const Trace inputs = stimulate(*vector.the_case, vector.rate);
+  adds_constants(run.lacks, subject_of(*vector.the_case), inputs, parameters, ignored);
+  return parameters;
+}
+
 }  // namespace
 
 std::optional<Diagnosis> diagnose_run(const RunResult& run, const std::vector<SelectedCase>& cases,
                                       const HostOptions& host, const DiagnosisOptions& options) {
   Laboratory laboratory(host, options, run.level);
-  laboratory.run_port(diagnosis_vectors(cases, run.results));
+  auto vectors = diagnosis_vectors(cases, run.results);
+  for (DiagnosisVector& vector : vectors) vector.parameters = parameters_of(run, vector);
+  laboratory.run_port(vectors);
   std::optional<Diagnosis> diagnosis = diagnose(laboratory.evidence());
   std::vector<std::string> remarks = remarks_on(run.results);
   if (!diagnosis && remarks.empty()) return std::nullopt;

@@ -183,16 +183,26 @@ Result<VectorComparison> Codec<VectorComparison>::decode(const std::string& text
   return attest::decode(text).map(comparison_from);
 }
 
-Result<VectorAnswer> PortAnswerJob::run(std::size_t) {
-  const auto host = start_host(options_);
+Result<void> PortAnswerJob::open() {
+  host_.reset();  // one process of the port at a time
+  has_failed_ = false;
+  auto host = start_host(options_);
   if (!host) return tl::unexpected(host.error());
-  const Case& the_case = *vector_.the_case;
-  const Declarations& port = (*host)->declarations();
+  host_ = *std::move(host);
+  return {};
+}
+
+Result<VectorAnswer> PortAnswerJob::run(std::size_t task) {
+  const DiagnosisVector& vector = vectors_[task];
+  const Case& the_case = *vector.the_case;
+  const Declarations& port = host_->declarations();
   if (marks_declined(port, the_case.group)) return std::nullopt;
-  Trace got = inputs_for(port, the_case, vector_.rate);
+  Trace got = inputs_for(port, the_case, vector.rate, vector.parameters);
   const ModuleUnderTest subject = subject_of(the_case);
   const auto law = reference_outputs(subject, got);
-  if (!law || (*host)->drive(subject, got)) return std::nullopt;
+  if (!law) return std::nullopt;
+  has_failed_ = host_->drive(subject, got).has_value();
+  if (has_failed_) return std::nullopt;
   PortAnswer answer;
   if (level_ == Level::exact) {
     const Tolerances exact =
@@ -214,7 +224,8 @@ Result<VectorComparison> ComparisonJob::run(std::size_t) {
   port.fraction_bits = vector_.fraction_bits;
   port.fixed_step = vector_.fixed_step;
   const ModuleUnderTest subject = subject_of(the_case);
-  const auto law = reference_outputs(subject, inputs_for(port, the_case, vector_.vector.rate));
+  const auto law = reference_outputs(
+      subject, inputs_for(port, the_case, vector_.vector.rate, vector_.vector.parameters));
   if (!law) return tl::unexpected(law.error());
   const Tolerances tolerances =
       tolerances_of(the_case, Level::numeric, port.fraction_bits, law->samples.size());

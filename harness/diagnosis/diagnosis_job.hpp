@@ -17,7 +17,7 @@
 
 namespace attest {
 
-// What a port answered to a vector that it ran alone.
+// What a port answered to a vector.
 struct PortAnswer {
   Outputs outputs;              // those that a recording lacks are the law's
   LibraryMatches library = {};  // at the level exact
@@ -39,7 +39,8 @@ struct Codec<VectorAnswer> {
 struct DiagnosisVector {
   const Case* the_case = nullptr;
   Rate rate;
-  bool failed = false;  // in the run
+  bool failed = false;                           // in the run
+  std::vector<ParameterChange> parameters = {};  // replace those of the case
 };
 
 // Up to 240 vectors that failed with a deviation, then up to 120 that passed, spread over the
@@ -49,18 +50,25 @@ struct DiagnosisVector {
 std::vector<DiagnosisVector> diagnosis_vectors(const std::vector<SelectedCase>& cases,
                                                const std::vector<VectorResult>& results);
 
-// Runs the port on a vector. `level`: of the verdict. REQUIRES: the vector's case outlives this.
+// Runs the port on vectors, in one process unless it fails. `level`: of the verdict. REQUIRES: the
+// cases of the vectors outlive this.
 class PortAnswerJob final : public PortJob<VectorAnswer> {
  public:
-  PortAnswerJob(DiagnosisVector vector, HostOptions options, Level level = Level::numeric)
-      : PortJob(std::move(options)), vector_(std::move(vector)), level_(level) {}
+  PortAnswerJob(std::vector<DiagnosisVector> vectors, HostOptions options,
+                Level level = Level::numeric)
+      : PortJob(std::move(options)), vectors_(std::move(vectors)), level_(level) {}
 
-  std::size_t size() const override { return 1; }
+  std::size_t size() const override { return vectors_.size(); }
+  Result<void> open() override;
   Result<VectorAnswer> run(std::size_t task) override;
+  bool is_spent() const override { return !host_ || has_failed_; }
+  void close() override { host_.reset(); }
 
  private:
-  DiagnosisVector vector_;
+  std::vector<DiagnosisVector> vectors_;
   Level level_;
+  std::unique_ptr<PortHost> host_;
+  bool has_failed_ = false;
 };
 
 // A vector, and what the port answered. The outputs are null if they are the law's.
