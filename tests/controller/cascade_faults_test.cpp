@@ -149,10 +149,11 @@ std::vector<const Fault*> walked_faults([[maybe_unused]] std::size_t one_of) {
   return walked;
 }
 
-// More than rounding.
+// More than rounding. Faults of the group `instances` show only with a second instance.
 TEST(CascadeFaults, EachIsToldFromTheLawInItsProfiles) {
   constexpr float tolerance = 1e-5f;
   for (const Fault* fault : walked_faults(32)) {
+    if (fault->group == "instances") continue;
     for (const cascade::Profile profile : every_profile) {
       if (!fault->is_detectable(name_of(profile))) continue;
       EXPECT_TRUE(is_told(profile, *fault, tolerance)) << fault->id << " in " << name_of(profile);
