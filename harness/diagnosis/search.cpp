@@ -19,9 +19,10 @@ constexpr std::size_t most_compared = 64;
 // and the faults that it adds.
 constexpr std::size_t most_seeds = 5, most_in_combination = 14, most_added = 3;
 
-// The share of the vectors where a fault acts at which the port may be right. Above 0, because
-// another mistake may hide that of the fault.
-constexpr double most_contradicted = 0.05;
+// The share of the vectors where a fault acts at which the port may be right, and their number that
+// is allowed in any case. Above 0, because another mistake may hide that of the fault, and because
+// a mistake may be that of the fault but for a special case.
+constexpr double most_contradicted = 0.05, always_allowed = 1;
 
 }  // namespace
 
@@ -30,7 +31,9 @@ double weight(OutputMask outputs, const VectorSimilarity& vector) {
          static_cast<double>(std::popcount(vector.deviating));
 }
 
-bool Score::is_contradicted() const { return contradicted > most_contradicted * acting; }
+bool Score::is_contradicted() const {
+  return contradicted > std::max(always_allowed, most_contradicted * acting);
+}
 
 bool Score::is_useful() const { return gained > 0 && nearer > 0 && !is_contradicted(); }
 
