@@ -171,8 +171,10 @@ class Replay {
 
   Result<void> judge_unit(const FlightLog& log, const LoggedUnit& unit,
                           std::vector<LogResult>& results) {
-    const LogResult& found = results.emplace_back(evaluate_log(
-        unit, log.profile, *host_, options_.log_limits, parameters_of(options_, log, unit)));
+    auto evaluated = evaluate_log(unit, log.profile, *host_, options_.log_limits,
+                                  parameters_of(options_, log, unit));
+    if (!evaluated) return tl::unexpected(evaluated.error());
+    const LogResult& found = results.emplace_back(*std::move(evaluated));
     count(found.result);
     entries_.push_back(json_of_unit(log, unit, found, options_.log_limits));
     if (found.result.verdict == Verdict::pass && globals_.quiet) return {};

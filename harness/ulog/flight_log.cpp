@@ -222,28 +222,32 @@ class LogReading {
     flight_.release = log_.release;
     flight_.profile = log_.source.substr(0, std::min(log_.source.find('/'), log_.source.size()));
     add_origin(log_, flight_.notes);
-    for (ModuleContents* module : modules) add(*module);
+    for (ModuleContents* module : modules) {
+      if (auto added = add(*module); !added) return tl::unexpected(added.error());
+    }
     note_assumed();
     add_losses(log_, flight_.notes);
     return std::move(flight_);
   }
 
  private:
-  void add(ModuleContents& log) {
-    LoggedUnit unit;
+  Result<void> add(ModuleContents& log) {
     if (std::string missing = lacking(log, log_.is_of_attest()); !missing.empty()) {
+      LoggedUnit& unit = flight_.units.emplace_back();
       unit.module = log.module();
       unit.step_topic = log.steps().name();
       unit.trace.present.set(0).set(updated_channel(log.module(), "parameter_update"));
       unit.not_judged = "the log has " + std::move(missing);
       unit.trace.source = path_.string();
-    } else {
-      unit = made(log);
+      return {};
     }
-    flight_.units.push_back(std::move(unit));
+    auto unit = made(log);
+    if (!unit) return tl::unexpected(unit.error());
+    flight_.units.push_back(*std::move(unit));
+    return {};
   }
 
-  LoggedUnit made(ModuleContents& log) {
+  Result<LoggedUnit> made(ModuleContents& log) {
     const LogRules rules = log_.is_of_attest()                     ? LogRules::attest
                            : info_of(log.module()).is_of_cascade() ? LogRules::cascade
                                                                    : LogRules::controller;
@@ -253,12 +257,12 @@ class LogReading {
     if (!assumed_.empty() || rules != LogRules::attest) used = assume(assumed_, log, first);
     for (const std::string& word : used) add_once(word, used_);
     const auto rate_hz = fastest_hz(log);
-    const auto& times = log.steps().times();
-    const StepGaps gaps = step_gaps(std::vector<std::uint64_t>(times.begin(), times.end()));
-    LoggedUnit unit = unit_of_log(std::move(log), first, rules, path_.string());
-    if (log_.dropouts > 0 || !log_.damage.empty()) unit.has_every_step = false;
-    if (rules == LogRules::cascade && !used.empty()) unit.has_every_step = false;
-    if (rules == LogRules::cascade) judge_steps(gaps, rate_hz, unit);
+    const StepGaps gaps = log.step_gaps();
+    auto unit = unit_of_log(std::move(log), first, rules, path_.string());
+    if (!unit) return unit;
+    if (log_.dropouts > 0 || !log_.damage.empty()) unit->has_every_step = false;
+    if (rules == LogRules::cascade && !used.empty()) unit->has_every_step = false;
+    if (rules == LogRules::cascade) judge_steps(gaps, rate_hz, *unit);
     return unit;
   }
 

@@ -85,10 +85,11 @@ struct FlightLog {
 // Reads a ULog: of the controller, if it has samples of control_state, else of the units of v1.14
 // to v1.16. All parameters of the log are in the traces, those of other modules too.
 //
-// An output topic with the field `timestamp_sample` is paired with the step whose sample has this
-// time. Any other output is paired with the last step that is not after it; in a log of v1.14 to
-// v1.16 only if that step is at most 2 ms earlier, because the log may lack a later step. A second
-// output of the same step is not paired.
+// An output topic with the field `timestamp_sample` is paired with the earlier step whose sample
+// has this time. Any other output is paired with the last step that is not after it; in a log of
+// v1.14 to v1.16 only if that step is at most 2 ms earlier, because the log may lack a later step.
+// Not paired: a second output of the same step, and an output that is logged 1000 steps after its
+// own.
 //
 // In a log of v1.14 to v1.18, several modules publish the setpoints, depending on the mode:
 // - vehicle_attitude_setpoint is an output of the attitude unit if the unit makes it from the
@@ -102,8 +103,9 @@ struct FlightLog {
 // of attest, none. The words apply to topics without a sample in the log. Errors: the file cannot
 // be read or is not a ULog; it has too little for every unit; those of check_assumed().
 //
-// Not `whole`: with LoggedUnit::ticks. Their memory grows with the log: it has the values of the
-// topics of the units, each in the bytes of its type.
+// Not `whole`: with LoggedUnit::ticks, which read the file again. They keep the samples of a short
+// time, so their memory does not grow with the log; it grows with the time by which samples are out
+// of order in the file.
 Result<FlightLog> read_flight_log(const std::filesystem::path& path,
                                   const std::vector<std::string>& assumed = {}, bool whole = true);
 

@@ -20,6 +20,12 @@ Release release_of(std::uint32_t version) {
   return {byte(24), byte(16), byte(8)};
 }
 
+// A series that takes the samples of a subscription.
+struct Receiver {
+  ModuleContents* module;
+  LogSeries* series;
+};
+
 class ContentsReader {
  public:
   explicit ContentsReader(Reader& reader) : reader_(reader) {
@@ -65,19 +71,19 @@ class ContentsReader {
     const std::size_t index = data.subscription->index;
     if (index >= receivers_.size()) receivers_.resize(index + 1);
     if (!receivers_[index]) receivers_[index] = receivers_of(*data.subscription);
-    for (LogSeries* series : *receivers_[index]) series->add(reader_, data);
+    for (const Receiver& one : *receivers_[index]) one.module->count(*one.series, reader_, data);
   }
 
   // At the first call the name of the system is known, because it comes before the first data.
-  std::vector<LogSeries*> receivers_of(const Subscription& subscription) {
+  std::vector<Receiver> receivers_of(const Subscription& subscription) {
     if (!knows_system_) {
       knows_system_ = true;
       if (!log_.is_of_attest()) accept_every_publisher();
     }
-    std::vector<LogSeries*> found;
+    std::vector<Receiver> found;
     for (ModuleContents& module : log_.modules) {
       for (LogSeries& series : module.series()) {
-        if (series.accepts(subscription)) found.push_back(&series);
+        if (series.accepts(subscription)) found.push_back({&module, &series});
       }
     }
     return found;
@@ -95,8 +101,8 @@ class ContentsReader {
   void locate_empty_topics() {
     for (const Subscription& subscription : reader_.subscriptions()) {
       if (subscription.format == nullptr) continue;
-      for (LogSeries* series : receivers_of(subscription)) {
-        if (!series->is_located()) series->locate(reader_, subscription);
+      for (const Receiver& one : receivers_of(subscription)) {
+        if (!one.series->is_located()) one.series->locate(reader_, subscription);
       }
     }
   }
@@ -114,7 +120,7 @@ class ContentsReader {
   Reader& reader_;
   LogContents log_;
   bool knows_system_ = false;
-  std::vector<std::optional<std::vector<LogSeries*>>> receivers_;  // by subscription
+  std::vector<std::optional<std::vector<Receiver>>> receivers_;  // by subscription
 };
 
 }  // namespace
@@ -130,6 +136,19 @@ bool ModuleContents::has_outputs() const {
   return std::any_of(series_.begin(), series_.end(), [](const LogSeries& series) {
     return series.is_output() && series.size() > 0 && !series.logged_channels().empty();
   });
+}
+
+void ModuleContents::count(LogSeries& series, const Reader& reader, const Data& data) {
+  if (!series.count(reader, data)) return;
+  const std::uint64_t time = series.newest_time();
+  if (&series == &steps()) {
+    if (series.size() == 1) first_step_us_ = time;
+    gap_counts_.add(time);
+  } else if (steps().size() > 0 && time <= first_step_us_) {
+    order_.first_step_until = reader.offset();
+  } else if (time < steps().newest_time()) {
+    order_.latest_us = std::max(order_.latest_us, steps().newest_time() - time);
+  }
 }
 
 const LogSeries* ModuleContents::find(std::string_view topic, bool is_output) const {
@@ -148,6 +167,55 @@ Result<LogContents> read_contents(const std::filesystem::path& path) {
   auto reader = Reader::open(path);
   if (!reader) return tl::unexpected(reader.error());
   return ContentsReader(*reader).read();
+}
+
+Result<SampleReader> SampleReader::open(const std::string& path, ModuleContents& log) {
+  auto reader = Reader::open(path);
+  if (!reader) return tl::unexpected(reader.error());
+  for (LogSeries& series : log.series()) series.restart();
+  return SampleReader(*std::move(reader), log);
+}
+
+Result<void> SampleReader::read_until(std::uint64_t time_us) {
+  while (!has_ended_ && !has_all(time_us)) {
+    if (auto read = read_message(); !read) return read;
+  }
+  return {};
+}
+
+Result<bool> SampleReader::read_more() {
+  constexpr int messages = 1000;
+  for (int i = 0; i < messages && !has_ended_; ++i) {
+    if (auto read = read_message(); !read) return tl::unexpected(read.error());
+  }
+  return !has_ended_;
+}
+
+// See SampleOrder: the samples that follow in the file are later than `time_us`.
+bool SampleReader::has_all(std::uint64_t time_us) const {
+  const SampleOrder& order = log_->order();
+  const std::uint64_t newest = log_->steps().newest_time();
+  return reader_.offset() >= order.first_step_until && newest > time_us &&
+         newest - time_us > order.latest_us;
+}
+
+Result<void> SampleReader::read_message() {
+  Message message;
+  const auto more = reader_.next(message);
+  if (!more) return tl::unexpected(more.error());
+  has_ended_ = !*more;
+  const auto* const data = std::get_if<Data>(&message);
+  if (has_ended_ || data == nullptr || reader_.is_appended()) return {};
+  const std::size_t index = data->subscription->index;
+  if (index >= receivers_.size()) receivers_.resize(index + 1);
+  if (!receivers_[index]) {
+    receivers_[index].emplace();
+    for (LogSeries& series : log_->series()) {
+      if (series.accepts(*data->subscription)) receivers_[index]->push_back(&series);
+    }
+  }
+  for (LogSeries* series : *receivers_[index]) series->add(reader_, *data);
+  return {};
 }
 
 }  // namespace attest::ulog

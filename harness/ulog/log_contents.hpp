@@ -1,4 +1,4 @@
-// The samples of a log, for each module that can be replayed and each of its topics.
+// What a log has for each module that can be replayed, and its samples.
 #pragma once
 
 #include <cstdint>
@@ -6,11 +6,13 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "harness/core/result.hpp"
 #include "harness/trace/trace.hpp"
 #include "harness/ulog/log_series.hpp"
+#include "harness/ulog/step_gaps.hpp"
 
 namespace attest::ulog {
 
@@ -19,6 +21,14 @@ struct Release {
   int major = 0, minor = 0, patch = 0;
 
   std::string to_string() const;  // "v1.14.3"
+};
+
+// How far the order of the samples in the file is from that of their times.
+struct SampleOrder {
+  // The place in the file of the last sample that is not later than the first step.
+  std::uint64_t first_step_until = 0;
+  // Any other sample is in the file before the first step that is later by more than this.
+  std::uint64_t latest_us = 0;
 };
 
 class ModuleContents {
@@ -30,11 +40,18 @@ class ModuleContents {
   const std::vector<LogSeries>& series() const { return series_; }
   // The samples of the topic that triggers a step.
   const LogSeries& steps() const { return *input(step_topic_); }
+  LogSeries& steps() { return const_cast<LogSeries&>(std::as_const(*this).steps()); }
   // The input or output topic of that name; null if the module has none.
   const LogSeries* input(std::string_view topic) const { return find(topic, false); }
   const LogSeries* output(std::string_view topic) const { return find(topic, true); }
   // Whether an output topic has samples and at least one known field.
   bool has_outputs() const;
+
+  // Counts the last sample that `reader` read. REQUIRES: `series` is one of series(), and accepts
+  // it.
+  void count(LogSeries& series, const Reader& reader, const Data& data);
+  StepGaps step_gaps() const { return gap_counts_.gaps(); }
+  const SampleOrder& order() const { return order_; }
 
   std::vector<ParameterChange> parameters;  // `tick`: the number of steps logged before the change
 
@@ -44,6 +61,9 @@ class ModuleContents {
   Module module_;
   std::string step_topic_;
   std::vector<LogSeries> series_;
+  GapCounts gap_counts_;
+  std::uint64_t first_step_us_ = 0;
+  SampleOrder order_;
 };
 
 struct LogContents {
@@ -57,8 +77,32 @@ struct LogContents {
   ModuleContents& of(Module module);
 };
 
-// Reads the whole log. Keeps the samples of the modules' topics in memory. Errors: the file cannot
-// be read or is not a ULog.
+// Reads the whole log. Counts the samples of the modules' topics, and keeps no sample. Errors: the
+// file cannot be read or is not a ULog.
 Result<LogContents> read_contents(const std::filesystem::path& path);
+
+// Reads the samples of one module of a log again. Keeps them until their series forget them.
+class SampleReader {
+ public:
+  // REQUIRES: read_contents() made `log`, which outlives this.
+  static Result<SampleReader> open(const std::string& path, ModuleContents& log);
+
+  // Reads until the series have all samples up to this time.
+  Result<void> read_until(std::uint64_t time_us);
+  // Reads some samples. False: the log has ended.
+  Result<bool> read_more();
+  bool has_ended() const { return has_ended_; }
+
+ private:
+  SampleReader(Reader reader, ModuleContents& log) : reader_(std::move(reader)), log_(&log) {}
+
+  Result<void> read_message();
+  bool has_all(std::uint64_t time_us) const;
+
+  Reader reader_;
+  ModuleContents* log_;
+  bool has_ended_ = false;
+  std::vector<std::optional<std::vector<LogSeries*>>> receivers_;  // by subscription
+};
 
 }  // namespace attest::ulog

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace attest::ulog {
 namespace {
@@ -87,19 +88,29 @@ std::uint64_t LogSeries::bits_of(const Data& data, std::size_t field) const {
   return is_byte ? flag_of(value) : std::bit_cast<std::uint32_t>(value);
 }
 
-void LogSeries::add(const Reader& reader, const Data& data) {
+bool LogSeries::count(const Reader& reader, const Data& data) {
   if (located_ != data.subscription->index) locate(reader, *data.subscription);
   if (!time_) {
     ++without_time_;
-    return;
+    return false;
   }
   const auto time = value_in<std::uint64_t>(data, *time_);
-  if (!times_.empty() && time <= times_.back()) {
+  if (size_ > 0 && time <= newest_) {
     ++left_out_;
-    return;
+    return false;
   }
-  times_.push_back(time);
-  if (sample_time_) sample_times_.push_back(value_in<std::uint64_t>(data, *sample_time_));
+  newest_ = time;
+  const auto before = std::exchange(newest_sample_time_, std::nullopt);
+  if (sample_time_) newest_sample_time_ = value_in<std::uint64_t>(data, *sample_time_);
+  if (!newest_sample_time_ || (before && *newest_sample_time_ < *before)) has_sample_times_ = false;
+  ++size_;
+  return true;
+}
+
+void LogSeries::add(const Reader& reader, const Data& data) {
+  if (!count(reader, data)) return;
+  times_.push_back(newest_);
+  sample_times_.push_back(newest_sample_time_);
   for (std::size_t i = 0; i < places_.size(); ++i) {
     const std::uint64_t bits = bits_of(data, i);
     const auto* const bytes = reinterpret_cast<const unsigned char*>(&bits);
@@ -107,14 +118,23 @@ void LogSeries::add(const Reader& reader, const Data& data) {
   }
 }
 
-std::optional<std::uint64_t> LogSeries::sample_time(std::size_t row) const {
-  if (sample_times_.size() != times_.size()) return std::nullopt;
-  return sample_times_[row];
+void LogSeries::forget_before(std::size_t row) {
+  const auto rows = static_cast<std::ptrdiff_t>(row - forgotten_);
+  if (rows == 0) return;
+  times_.erase(times_.begin(), times_.begin() + rows);
+  sample_times_.erase(sample_times_.begin(), sample_times_.begin() + rows);
+  values_.erase(values_.begin(), values_.begin() + rows * static_cast<std::ptrdiff_t>(row_bytes_));
+  forgotten_ = row;
 }
 
-std::size_t LogSeries::first_after(std::uint64_t time) const {
-  return static_cast<std::size_t>(std::upper_bound(times_.begin(), times_.end(), time) -
-                                  times_.begin());
+void LogSeries::restart() {
+  times_.clear();
+  sample_times_.clear();
+  values_.clear();
+  size_ = left_out_ = without_time_ = forgotten_ = 0;
+  newest_ = 0;
+  newest_sample_time_.reset();
+  has_sample_times_ = true;
 }
 
 std::vector<const LogField*> LogSeries::missing_fields() const {
@@ -134,7 +154,7 @@ std::vector<std::size_t> LogSeries::logged_channels() const {
 }
 
 void LogSeries::copy(std::size_t row, Sample& to) const {
-  auto at = values_.begin() + static_cast<std::ptrdiff_t>(row * row_bytes_);
+  auto at = values_.begin() + static_cast<std::ptrdiff_t>((row - forgotten_) * row_bytes_);
   for (const LogField& field : topic_.fields) {
     const Channel& channel = channels()[field.channel];
     const auto count = static_cast<std::ptrdiff_t>(bytes_of(field));

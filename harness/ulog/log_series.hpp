@@ -33,22 +33,32 @@ class LogSeries {
 
   // Finds the fields of the topic in the subscription's format. REQUIRES: accepts(subscription).
   void locate(const Reader& reader, const Subscription& subscription);
-  // Adds a sample. Leaves it out if it has no timestamp, or if its timestamp is not after that of
-  // the sample before. REQUIRES: accepts() its subscription.
+  // Counts a sample. False: it is left out, because it has no timestamp, or because its timestamp
+  // is not after that of the sample before. REQUIRES: accepts() its subscription.
+  bool count(const Reader& reader, const Data& data);
+  // Counts a sample, and keeps it unless it is left out.
   void add(const Reader& reader, const Data& data);
+  // Ends the keeping of all samples before `row`. REQUIRES: row <= size().
+  void forget_before(std::size_t row);
+  // Forgets and counts no sample, so that the log can be read again.
+  void restart();
 
-  std::size_t size() const { return times_.size(); }
+  // The samples so far. They are counted from 0 on, also when earlier ones are forgotten.
+  std::size_t size() const { return size_; }
   std::size_t left_out() const { return left_out_; }
   // Samples left out because the topic has no timestamp. Not counted in left_out().
   std::size_t without_time() const { return without_time_; }
-  std::uint64_t time(std::size_t row) const { return times_[row]; }  // us
-  const std::deque<std::uint64_t>& times() const { return times_; }
+  std::uint64_t newest_time() const { return newest_; }  // us; 0 without a sample
+  // Whether every sample has the field `timestamp_sample`, and this time never decreases.
+  bool has_sample_times() const { return has_sample_times_; }
+
+  // REQUIRES, here and in copy(): `row` was added and not forgotten.
+  std::uint64_t time(std::size_t row) const { return times_[row - forgotten_]; }  // us
   // The field `timestamp_sample`: the time of the sensor sample behind this sample. Empty if the
   // topic has no such field.
-  std::optional<std::uint64_t> sample_time(std::size_t row) const;
-  const std::deque<std::uint64_t>& sample_times() const { return sample_times_; }
-  // Index of the first sample after that time; size() if there is none.
-  std::size_t first_after(std::uint64_t time) const;
+  std::optional<std::uint64_t> sample_time(std::size_t row) const {
+    return sample_times_[row - forgotten_];
+  }
 
   // Whether the log has the topic, perhaps without samples.
   bool is_located() const { return located_.has_value(); }
@@ -77,10 +87,15 @@ class LogSeries {
   std::optional<std::size_t> located_;  // index of the subscription of these places
   std::optional<Column> time_, sample_time_;
   std::vector<Place> places_;  // of the topic's fields
-  // A deque does not copy its elements when it grows, so it never needs twice its memory.
-  std::deque<std::uint64_t> times_, sample_times_;
+  std::size_t size_ = 0, left_out_ = 0, without_time_ = 0;
+  std::uint64_t newest_ = 0;
+  std::optional<std::uint64_t> newest_sample_time_;
+  bool has_sample_times_ = true;
+
+  std::size_t forgotten_ = 0;  // rows; the others are here
+  std::deque<std::uint64_t> times_;
+  std::deque<std::optional<std::uint64_t>> sample_times_;
   std::deque<unsigned char> values_;  // sample by sample, each field in the bytes of its channel
-  std::size_t left_out_ = 0, without_time_ = 0;
 };
 
 }  // namespace attest::ulog

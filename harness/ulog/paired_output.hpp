@@ -3,44 +3,52 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
-#include <vector>
 
 #include "harness/ulog/flight_log.hpp"
 #include "harness/ulog/unit_log.hpp"
 
 namespace attest::ulog {
 
+// The inputs of a step, and its outputs as far as they are found.
+struct PairedStep {
+  Sample sample;
+  std::optional<std::uint64_t> sample_time;  // LogSeries::sample_time()
+};
+
+// The last steps, to which outputs can be paired.
+using PairedSteps = std::deque<PairedStep>;
+
 class PairedOutput {
  public:
-  // REQUIRES: `log` outlives this, `series` is an output topic of it.
-  PairedOutput(const ModuleContents& log, const LogSeries& series, LogRules rules);
+  // `has_sample_times`: that of the whole log's steps. REQUIRES: `series`, an output topic of
+  // `module`, outlives this.
+  PairedOutput(Module module, LogSeries& series, bool has_sample_times, LogRules rules);
 
-  // Pairs the samples that were logged before the first step, or from a step until the next one.
-  // `step`: the inputs of that step; null before the first step. Call it for each step in turn.
-  void pair_until(std::size_t next_tick, const Sample* step);
+  // Adds the outputs that were logged before `end` to their steps, and forgets them; without `end`,
+  // all that were read. The last one of `steps` is the last that began before they were logged;
+  // without steps, they were logged before the first one. REQUIRES: the series has all samples
+  // before `end`.
+  void pair_until(std::optional<std::uint64_t> end, PairedSteps& steps);
 
   // Of the samples that were paired so far.
   const LoggedOutput& logged() const { return logged_; }
 
-  // Adds the outputs of the tick. A tick that does not publish has the values of the tick before,
-  // as the ABI requires.
-  void add_to(std::size_t tick, const Sample& before, Sample& sample) const;
+  // A step that does not publish has the values of the step before, as the ABI requires.
+  void repeat(const Sample& before, Sample& sample) const;
 
  private:
-  void pair(std::size_t row, const Sample* step);
-  bool is_of_others(const Sample* step) const;
-  std::optional<std::size_t> tick_of(std::size_t row) const;
-  std::optional<std::size_t> tick_sampled_at(std::uint64_t time) const;
+  void pair(std::size_t row, PairedSteps& steps);
+  bool is_of_others(const PairedSteps& steps) const;
+  PairedStep* step_of(std::size_t row, PairedSteps& steps) const;
 
-  const LogSeries& series_;
-  const LogSeries& steps_;
+  LogSeries& series_;
   Module module_;
   LogRules rules_;
   const Channel& published_;
-  bool has_sample_times_;  // every step has a timestamp_sample; these do not decrease
+  bool has_sample_times_;
   std::size_t next_row_ = 0;
-  std::vector<std::uint32_t> rows_;  // of each tick, counted from 1; 0: the tick has no output
   LoggedOutput logged_;
 };
 

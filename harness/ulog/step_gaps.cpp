@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -27,20 +26,27 @@ double StepGaps::part_missing() const {
   return all == 0 ? 0 : static_cast<double>(missing) / static_cast<double>(all);
 }
 
-StepGaps step_gaps(std::span<const std::uint64_t> times_us) {
-  StepGaps found{times_us.size()};
-  std::vector<std::uint64_t> gaps;
-  for (std::size_t i = 1; i < times_us.size(); ++i) gaps.push_back(times_us[i] - times_us[i - 1]);
-  if (gaps.empty()) return found;
-  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
-  std::nth_element(gaps.begin(), middle, gaps.end());
-  found.median_us = static_cast<double>(*middle);
-  for (const std::uint64_t gap : gaps) {
+void GapCounts::add(std::uint64_t time_us) {
+  if (steps_++ > 0) ++counts_[time_us - last_us_];
+  last_us_ = time_us;
+}
+
+StepGaps GapCounts::gaps() const {
+  StepGaps found{steps_};
+  if (counts_.empty()) return found;
+  std::size_t up_to = 0;  // the number of gaps that are at most this long
+  for (const auto& [gap, count] : counts_) {
+    up_to += count;
+    if (up_to <= (steps_ - 1) / 2) continue;
+    found.median_us = static_cast<double>(gap);
+    break;
+  }
+  for (const auto& [gap, count] : counts_) {
     // The limit prevents an overflow below: a damaged log may have any times.
     const double periods = std::min(std::round(static_cast<double>(gap) / found.median_us), 1e12);
-    if (periods > 1) found.missing += static_cast<std::size_t>(periods) - 1;
-    found.longest_us = std::max(found.longest_us, gap);
+    if (periods > 1) found.missing += count * (static_cast<std::size_t>(periods) - 1);
   }
+  found.longest_us = counts_.rbegin()->first;
   return found;
 }
 

@@ -3,8 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
-#include <span>
 #include <string>
 
 #include "harness/trace/module.hpp"
@@ -20,8 +20,19 @@ struct StepGaps {
   double part_missing() const;  // missing / (steps + missing), 0..1
 };
 
-// REQUIRES: increasing times.
-StepGaps step_gaps(std::span<const std::uint64_t> times_us);
+// Takes the times of the steps one by one. Memory: the different gaps, of which the log of a flight
+// has few.
+class GapCounts {
+ public:
+  // REQUIRES: later than the time before.
+  void add(std::uint64_t time_us);
+  StepGaps gaps() const;
+
+ private:
+  std::size_t steps_ = 0;
+  std::uint64_t last_us_ = 0;
+  std::map<std::uint64_t, std::size_t> counts_;  // gap -> how often
+};
 
 // Why outputs that depend on earlier steps cannot be computed from a log with these gaps. Empty if
 // they can be computed approximately: at most 1% of the steps are missing, and PX4 can run this

@@ -15,8 +15,9 @@ enum class LogRules : std::uint8_t {
 };
 
 // A unit with LoggedUnit::ticks. `first`: the sample before the first step, with bits in `updated`
-// for the assumed topics. REQUIRES: the log has steps.
-LoggedUnit unit_of_log(ModuleContents log, const Sample& first, LogRules rules,
-                       const std::string& file);
+// for the assumed topics. Reads the file once more. REQUIRES: the log has steps; `log` is
+// of this file. Errors: the file cannot be read, or has changed.
+Result<LoggedUnit> unit_of_log(ModuleContents log, const Sample& first, LogRules rules,
+                               const std::string& file);
 
 }  // namespace attest::ulog

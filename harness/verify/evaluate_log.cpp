@@ -59,11 +59,13 @@ Parameters with_those_of_log(const LoggedUnit& log, const Parameters& of_port) {
   return parameters;
 }
 
-// The ticks of a log are in memory, so reading them cannot fail.
 template <typename Take>
-std::size_t for_each_part_of(LoggedTicks& ticks, std::size_t most_ticks, Take take) {
-  return ticks.rewind().and_then([&] { return for_each_part(ticks, most_ticks, take); }).value();
+Result<std::size_t> for_each_part_of(LoggedTicks& ticks, std::size_t most_ticks, Take take) {
+  return ticks.rewind().and_then([&] { return for_each_part(ticks, most_ticks, take); });
 }
+
+// How well the reference agrees with a log; empty if it cannot answer.
+using OfReference = std::optional<std::vector<TopicAgreement>>;
 
 // An instance of a port that gets the inputs of a log.
 class Replayed {
@@ -117,15 +119,18 @@ class Comparable {
   // `reference(most)`: how well the reference agrees with the log at the ticks of which at most
   // this is unknown. Empty if the reference cannot answer; then the log is not compared with it.
   template <typename Reference>
-  Comparable(const LoggedUnit& log, const LogLimits& limits, Reference reference)
-      : log_(log), limits_(limits) {
-    if (log.has_every_step) {
-      most_ = Known::if_every_step;
-      take(reference(most_));
-      if (agrees_with_reference(memoryless)) return;
+  static Result<Comparable> of(const LoggedUnit& log, const LogLimits& limits,
+                               Reference reference) {
+    Comparable made(log, limits);
+    for (const Known most : {Known::if_every_step, Known::all}) {
+      if (most == Known::if_every_step && !log.has_every_step) continue;
+      made.most_ = most;
+      auto found = reference(most);
+      if (!found) return tl::unexpected(found.error());
+      made.take(*std::move(found));
+      if (made.agrees_with_reference(memoryless)) break;
     }
-    most_ = Known::all;
-    take(reference(most_));
+    return made;
   }
 
   bool has_reference() const { return has_reference_; }
@@ -155,7 +160,9 @@ class Comparable {
   }
 
  private:
-  void take(std::optional<std::vector<TopicAgreement>> of_reference) {
+  Comparable(const LoggedUnit& log, const LogLimits& limits) : log_(log), limits_(limits) {}
+
+  void take(OfReference of_reference) {
     has_reference_ = of_reference.has_value();
     of_reference_ = std::move(of_reference).value_or(std::vector<TopicAgreement>());
   }
@@ -219,28 +226,31 @@ class LogJudge {
         as_flown_(without_those_of_others(subject_, with_those_of_log(log, of_port_))) {}
 
   // Empty if the reference has a fault, for example because it does not have the profile.
-  std::optional<std::vector<TopicAgreement>> of_reference(Known most) {
+  Result<OfReference> of_reference(Known most) {
     const auto host = open_reference();
     Replayed reference(*host, subject_, as_flown_);
     LogAgreement agreement(log_.trace.present, limits_);
     std::optional<PortFault> fault;
-    for_each_part_of(*ticks_, most_ticks_, [&](const Trace& logged, std::size_t at, bool is_last) {
-      Trace answered = reference.inputs(logged, at);
-      fault = reference.answer(answered, at, is_last);
-      if (!fault) agreement.add(answered, logged, answered, ticks_but(ticks_->known(), most));
-      return !fault;
-    });
+    const auto read = for_each_part_of(
+        *ticks_, most_ticks_, [&](const Trace& logged, std::size_t at, bool is_last) {
+          Trace answered = reference.inputs(logged, at);
+          fault = reference.answer(answered, at, is_last);
+          if (!fault) agreement.add(answered, logged, answered, ticks_but(ticks_->known(), most));
+          return !fault;
+        });
+    if (!read) return tl::unexpected(read.error());
     if (fault) return std::nullopt;
     return agreement.finish();
   }
 
   // Sets the topics and the ticks, unless the port has a fault.
-  std::optional<PortFault> drive(PortHost& port, const Comparable& comparable, LogResult& found) {
+  Result<std::optional<PortFault>> drive(PortHost& port, const Comparable& comparable,
+                                         LogResult& found) {
     const auto host = open_reference();
     Replayed reference(*host, subject_, as_flown_), judged(port, subject_, of_port_);
     LogAgreement agreement(log_.trace.present, limits_);
     std::optional<PortFault> fault;
-    const std::size_t ticks = for_each_part_of(
+    const auto ticks = for_each_part_of(
         *ticks_, most_ticks_, [&](const Trace& logged, std::size_t at, bool is_last) {
           Trace as_flown = reference.inputs(logged, at);
           if (comparable.has_reference()) reference.answer(as_flown, at, is_last);
@@ -252,11 +262,12 @@ class LogJudge {
           agreement.add(got, logged, as_flown, leaves_out);
           return true;
         });
+    if (!ticks) return tl::unexpected(ticks.error());
     if (fault) {
       found.got.keep_first(fault->tick);
       return fault;
     }
-    found.result.ticks = ticks;
+    found.result.ticks = *ticks;
     found.topics = agreement.finish();
     return std::nullopt;
   }
@@ -276,9 +287,10 @@ class LogJudge {
 
 }  // namespace
 
-LogResult evaluate_log(const LoggedUnit& log, const std::string& profile, PortHost& host,
-                       const LogLimits& limits, const std::vector<ParameterChange>& parameters,
-                       std::size_t most_ticks) {
+Result<LogResult> evaluate_log(const LoggedUnit& log, const std::string& profile, PortHost& host,
+                               const LogLimits& limits,
+                               const std::vector<ParameterChange>& parameters,
+                               std::size_t most_ticks) {
   LogResult found{result_for(log.trace.source, profile), {}, {}};
   VectorResult& result = found.result;
   if (marks_declined(host.declarations(), result)) return found;
@@ -290,12 +302,16 @@ LogResult evaluate_log(const LoggedUnit& log, const std::string& profile, PortHo
   found.got.source = log.trace.source;
   found.got.present = log.trace.present;
   LogJudge judging(log, {profile, log.module}, limits, parameters, most_ticks);
-  const Comparable comparable(log, limits, [&](Known most) { return judging.of_reference(most); });
-  if (const auto fault = judging.drive(host, comparable, found)) {
-    judge(*fault, result);
+  const auto comparable =
+      Comparable::of(log, limits, [&](Known most) { return judging.of_reference(most); });
+  if (!comparable) return tl::unexpected(comparable.error());
+  const auto fault = judging.drive(host, *comparable, found);
+  if (!fault) return tl::unexpected(fault.error());
+  if (*fault) {
+    judge(**fault, result);
     return found;
   }
-  for (TopicAgreement& topic : found.topics) topic.not_judged = comparable.why_not(topic);
+  for (TopicAgreement& topic : found.topics) topic.not_judged = comparable->why_not(topic);
   judge_topics(found.topics, limits, result);
   return found;
 }

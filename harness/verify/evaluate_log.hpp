@@ -39,10 +39,11 @@ struct LogResult {
 // have. Parameters that the unit does not have in this profile are left out. A log shows few
 // situations, so a pass is no statement of conformance.
 //
-// Reads the ticks twice, at most `most_ticks` at once. REQUIRES: a log with LoggedUnit::ticks was
-// not evaluated before.
-LogResult evaluate_log(const LoggedUnit& log, const std::string& profile, PortHost& host,
-                       const LogLimits& limits, const std::vector<ParameterChange>& parameters = {},
-                       std::size_t most_ticks = ticks_at_once);
+// Reads the ticks two or three times, at most `most_ticks` at once. Errors: those of
+// LoggedTicks::next_part().
+Result<LogResult> evaluate_log(const LoggedUnit& log, const std::string& profile, PortHost& host,
+                               const LogLimits& limits,
+                               const std::vector<ParameterChange>& parameters = {},
+                               std::size_t most_ticks = ticks_at_once);
 
 }  // namespace attest

@@ -204,6 +204,19 @@ flight_log() {
   has "FAIL 0 of 1"
 }
 
+@test "a long log is not in memory as a whole" {
+  ! nm "$ATTEST" | grep -q __asan_init || skip "sanitizers need more memory"
+  flight_log flight.ulg
+  "$PYTHON" "$SOURCE/tests/cli/long_log.py" flight.ulg long.ulg 60
+  run "$PYTHON" -c 'import resource, subprocess, sys
+run = subprocess.run(sys.argv[1:])
+print("peak_mb", resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss // 1024)
+sys.exit(run.returncode)' "$ATTEST" replay long.ulg
+  [ "$status" -eq 0 ]
+  has "PASS 1 of 1 traces and logs agree"
+  [ "$(sed -n 's/^peak_mb //p' <<<"$output")" -lt 45 ]
+}
+
 @test "an output field that the log lacks is not compared, and named" {
   log="$BATS_TEST_TMPDIR/flight.ulg"
   flight_log "$log"

@@ -235,5 +235,25 @@ TEST(LogAgreement, QuantilesAreOfTheNearestRank) {
   EXPECT_EQ(found.largest, 100);
 }
 
+TEST(LogAgreement, QuantilesOfManyDeviationsAreRoundedUp) {
+  constexpr std::size_t ticks = 200'000, in_part = 1000;
+  LogAgreement agreement(trace_of({}).present, {});
+  for (std::size_t first = 0; first < ticks; first += in_part) {
+    Rolls got;
+    for (std::size_t i = 1; i <= in_part; ++i)
+      got.emplace_back(1e-5f * static_cast<float>(first + i));
+    agreement.add(trace_of(got), trace_of(Rolls(in_part, 0.0f)), trace_of(got));
+  }
+  const TopicAgreement found = agreement.finish().front();
+  const auto is_near = [](double value, double exact) {
+    return value >= exact && value < 1.001 * exact;
+  };
+  EXPECT_PRED2(is_near, found.median, static_cast<double>(1e-5f * 1e5f));
+  EXPECT_PRED2(is_near, found.p90, static_cast<double>(1e-5f * 1.8e5f));
+  EXPECT_PRED2(is_near, found.p99, static_cast<double>(1e-5f * 1.98e5f));
+  EXPECT_EQ(found.largest, static_cast<double>(1e-5f * 2e5f));
+  EXPECT_EQ(found.within, 10u);
+}
+
 }  // namespace
 }  // namespace attest

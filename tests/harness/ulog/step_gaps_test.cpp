@@ -16,6 +16,12 @@ std::vector<std::uint64_t> times(std::size_t count, std::uint64_t period_us) {
   return all;
 }
 
+StepGaps step_gaps(const std::vector<std::uint64_t>& times_us) {
+  GapCounts times;
+  for (const std::uint64_t time : times_us) times.add(time);
+  return times.gaps();
+}
+
 TEST(StepGaps, CountsWhatIsMissing) {
   auto all = times(1000, 1000);
   all.erase(all.begin() + 500, all.begin() + 503);

@@ -70,7 +70,7 @@ void add_integral(LoggedUnit& log) {
 
 LogResult result_of(const LoggedUnit& log, const char* port = "builtin") {
   InProcessHost host(*open_port(port));
-  return evaluate_log(log, law_of_log, host, {});
+  return evaluate_log(log, law_of_log, host, {}).value();
 }
 
 TEST(EvaluateLog, ARightUnitAgreesAndAWrongOneDoesNot) {
@@ -107,7 +107,7 @@ TEST(EvaluateLog, PartsOfAnySizeGiveTheSameResult) {
   for (const char* port : {"builtin", "fault:cascade-i-missing"}) {
     const auto in_parts_of = [&](std::size_t most) {
       InProcessHost host(*open_port(port));
-      return evaluate_log(log, law_of_log, host, {}, {{0, "MC_PITCHRATE_P", 0.1f}}, most);
+      return evaluate_log(log, law_of_log, host, {}, {{0, "MC_PITCHRATE_P", 0.1f}}, most).value();
     };
     const LogResult whole = in_parts_of(1000);
     EXPECT_EQ(whole.topics.front().left_out, 50u);
@@ -127,18 +127,18 @@ TEST(EvaluateLog, PartsOfAnySizeGiveTheSameResult) {
 TEST(EvaluateLog, ALogOfTheControllerWithEveryStepIsBelieved) {
   LoggedUnit log = logged_controller();
   InProcessHost host(open_builtin());
-  EXPECT_EQ(evaluate_log(log, "px4-v1.5.5", host, {}).result.verdict, Verdict::pass);
+  EXPECT_EQ(evaluate_log(log, "px4-v1.5.5", host, {})->result.verdict, Verdict::pass);
   for (Sample& sample : log.trace.samples) sample.out.actuator_controls_0.control[0] += 0.1f;
-  EXPECT_EQ(evaluate_log(log, "px4-v1.5.5", host, {}).result.verdict, Verdict::fail);
+  EXPECT_EQ(evaluate_log(log, "px4-v1.5.5", host, {})->result.verdict, Verdict::fail);
   log.has_every_step = false;
-  EXPECT_EQ(evaluate_log(log, "px4-v1.5.5", host, {}).result.verdict, Verdict::pass);
+  EXPECT_EQ(evaluate_log(log, "px4-v1.5.5", host, {})->result.verdict, Verdict::pass);
 }
 
 TEST(EvaluateLog, AParameterOfThePortIsNotThatOfTheFlight) {
   LoggedUnit log = logged_rate_unit();
   const auto verdict_with = [&](const ParameterChange& change) {
     InProcessHost host(open_builtin());
-    return evaluate_log(log, law_of_log, host, {}, {change}).result.verdict;
+    return evaluate_log(log, law_of_log, host, {}, {change})->result.verdict;
   };
   const ParameterChange flown{0, "MC_ROLLRATE_P", 0.15f}, other{0, "MC_ROLLRATE_P", 0.2f};
   log.trace.parameters = {flown};
@@ -192,9 +192,9 @@ class OfAnyProfile final : public PortHost {
 TEST(EvaluateLog, ALogOfAnotherLawIsBelieved) {
   LoggedUnit log = logged_rate_unit();
   OfAnyProfile host;
-  EXPECT_EQ(evaluate_log(log, "our-law", host, {}).result.verdict, Verdict::pass);
+  EXPECT_EQ(evaluate_log(log, "our-law", host, {})->result.verdict, Verdict::pass);
   add_integral(log);
-  EXPECT_EQ(evaluate_log(log, "our-law", host, {}).result.verdict, Verdict::fail);
+  EXPECT_EQ(evaluate_log(log, "our-law", host, {})->result.verdict, Verdict::fail);
 }
 
 TEST(EvaluateLog, ASparseLogDoesNotJudge) {
