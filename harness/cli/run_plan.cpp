@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <set>
 #include <string>
 #include <utility>
@@ -74,8 +75,10 @@ Result<void> set_parameters(const RunOptions& options, const std::vector<Selecte
                             RunPlan& plan) {
   auto parameters = parse_parameters(options.parameters, cases);
   if (!parameters) return tl::unexpected(parameters.error());
-  if (!kind_of(options.host.port).is_callable()) {
-    const std::string folder = argument_of(options.host.port);
+  const std::string folder = argument_of(options.host.port);
+  // Without a manifest there is no port, which is found out later.
+  if (!kind_of(options.host.port).is_callable() &&
+      std::filesystem::exists(std::filesystem::path(folder) / manifest_name)) {
     const auto manifest = read_manifest(folder);
     if (!manifest) return tl::unexpected(manifest.error());
     if (!parameters->empty() && *parameters != manifest->parameters) {

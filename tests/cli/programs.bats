@@ -138,11 +138,11 @@ starts_of() {
   starts_of "program.py counts_starts"
   [ "$status" -eq 0 ]
   has "PASS 18 of 20 vectors conform"
-  [ "$(wc -l <starts)" -eq 2 ] # one answers what it is
+  [ "$(wc -l <starts)" -eq 3 ] # two answer what it is
   starts_of "program.py rolls"
   [ "$status" -eq 1 ]
   has "FAIL 18 failed"
-  [ "$(wc -l <starts)" -eq 5 ] # three failures were repeated alone
+  [ "$(wc -l <starts)" -eq 6 ] # three failures were repeated alone
 }
 
 @test "a program that ends is a crash with its status, signal and last words" {
