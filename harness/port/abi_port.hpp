@@ -14,7 +14,7 @@ namespace attest {
 class AbiUnit final : public Unit {
  public:
   // `self`: the unit that the table made. `timestamp_sample` is null if the unit does not need the
-  // time of the sample. `lacks` outlives this.
+  // time of the sample.
   AbiUnit(const ModuleAbi& abi, const void* table, void* self,
           const attest_timestamp_sample* timestamp_sample, const Lacks& lacks)
       : abi_(abi), table_(table), self_(self), timestamp_sample_(timestamp_sample), lacks_(lacks) {}
@@ -37,7 +37,7 @@ class AbiUnit final : public Unit {
   const void* table_;
   void* self_;
   const attest_timestamp_sample* timestamp_sample_;
-  const Lacks& lacks_;
+  const Lacks lacks_;  // a copy: the unit may outlive the port
 };
 
 // The words of a list that a port declares as text: "sticks, acro".

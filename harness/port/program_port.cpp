@@ -21,7 +21,6 @@ using Talk = std::shared_ptr<Conversation>;
 
 class ProgramUnit final : public Unit {
  public:
-  // `lacks` outlives this.
   ProgramUnit(Talk talk, std::uint32_t number, Module module, const Lacks& lacks)
       : talk_(std::move(talk)), number_(number), info_(info_of(module)), lacks_(lacks) {}
   ~ProgramUnit() override { talk_->destroy_quietly(number_); }
@@ -78,7 +77,7 @@ class ProgramUnit final : public Unit {
   Talk talk_;
   std::uint32_t number_;
   const ModuleInfo& info_;
-  const Lacks& lacks_;
+  const Lacks lacks_;
   ProgramStep step_;
   std::vector<ProgramStep> batch_;
 };

@@ -39,18 +39,25 @@ const Similarity& of_fault(const VectorSimilarity& vector, std::string_view id) 
 
 // ---- one vector ---------------------------------------------------------------------------------
 
+Result<VectorAnswer> answer_to(const DiagnosisVector& vector, const HostOptions& port,
+                               Level level = Level::numeric) {
+  PortAnswerJob job({vector}, port, level);
+  if (const auto opened = job.open(); !opened) return tl::unexpected(opened.error());
+  return job.run(0);
+}
+
 class PortAnswerTest : public testing::Test {
  protected:
   PortAnswerTest() { suite_.add_unblessed("tilted", tilted_and_loud); }
 
   Result<VectorAnswer> run(const HostOptions& port, Level level = Level::numeric) {
-    return PortAnswerJob({&suite_[0], Rate::hz(250), true}, port, level).run(0);
+    return answer_to({&suite_[0], Rate::hz(250), true}, port, level);
   }
   // The similarities of each fault with the port.
   VectorComparison compared(const HostOptions& port, const Hypothesis& base = {},
                             bool observes = false, std::size_t the_case = 0) {
     const DiagnosisVector vector{&suite_[the_case], Rate::hz(250), true};
-    const auto answer = PortAnswerJob(vector, port).run(0);
+    const auto answer = answer_to(vector, port);
     EXPECT_TRUE(answer && *answer);
     const AnsweredVector answered{vector, std::make_shared<const Outputs>((*answer)->outputs),
                                   (*answer)->fraction_bits, (*answer)->fixed_step};
@@ -155,7 +162,7 @@ TEST_F(PortAnswerTest, APortThatCannotBeOpenedIsAnError) {
 TEST_F(PortAnswerTest, AGroupThatThePortDeclinesHasNoAnswer) {
   Case tailsitter = suite_[0];
   const HostOptions port = here(test_port("no_tailsitter"));
-  const auto ran = [&] { return PortAnswerJob({&tailsitter, Rate::hz(250), true}, port).run(0); };
+  const auto ran = [&] { return answer_to({&tailsitter, Rate::hz(250), true}, port); };
   EXPECT_TRUE(*ran());
   tailsitter.group = "tailsitter";
   EXPECT_FALSE(*ran());
