@@ -26,7 +26,9 @@ Lacks parsed(const std::vector<std::string>& words) {
 TEST(Lacks, AreFeaturesOutputsAndConstants) {
   const Lacks lacks = parsed({"sticks", "rate_ctrl_status", "MC_YAW_FF=0.25"});
   EXPECT_THAT(names_of(lacks.features), ElementsAre("sticks"));
-  EXPECT_EQ(lacks.outputs, channels_of(Module::rate_unit, "out/rate_ctrl_status."));
+  EXPECT_EQ(lacks.outputs & channels_of(Module::rate_unit, "out/"),
+            channels_of(Module::rate_unit, "out/rate_ctrl_status."));
+  EXPECT_TRUE((lacks.outputs & channels_of(Module::attitude_unit, "out/")).none());
   ASSERT_NE(lacks.constant("MC_YAW_FF"), nullptr);
   EXPECT_EQ(lacks.constant("MC_YAW_FF")->answer_to(0.25f), ATTEST_OK);
   EXPECT_EQ(lacks.constant("MC_YAW_FF")->answer_to(0.5f), ATTEST_UNSUPPORTED);
