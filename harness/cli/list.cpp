@@ -182,10 +182,9 @@ void list_features(const std::vector<SelectedCase>& cases) {
   for (const auto& [the_case, configurations] : cases) {
     if (the_case.flight) continue;
     const Trace inputs = stimulate(the_case, configurations.front().rate.motor_unit);
-    const FeatureSet used = features_of(inputs, the_case.profile);
+    FeatureSet used = features_of(inputs, the_case.profile);
+    if (the_case.instances != Instances::one) used |= only(Feature::instances);
     for (std::size_t i = 0; i < feature_count; ++i) users[i] += used[i] ? 1 : 0;
-    const auto instances = static_cast<std::size_t>(Feature::instances);
-    users[instances] += the_case.instances == Instances::one ? 0 : 1;
   }
   fmt::print("{:<18}{:>6}  {}\n", "feature", "cases", "a case or flight uses it if");
   for (std::size_t i = 0; i < feature_count; ++i) {

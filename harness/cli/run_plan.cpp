@@ -89,6 +89,13 @@ Result<void> set_parameters(const RunOptions& options, const std::vector<Selecte
                       manifest->parameters.empty() ? "the parameters of the cases"
                                                    : text_of(manifest->parameters, ", ")));
     }
+    for (const ParameterChange& known : manifest->parameters) {
+      const std::string text = text_of({&known, 1}, "");
+      if (auto accepted = parse_parameters({text}, cases); !accepted) {
+        return fail_at((std::filesystem::path(folder) / manifest_name).string(),
+                       accepted.error().message);
+      }
+    }
     *parameters = manifest->parameters;
   }
   if (!plan.run.suite_reference.empty() && !parameters->empty()) {

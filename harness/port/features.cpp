@@ -33,8 +33,6 @@ constexpr std::array<FeatureInfo, feature_count> rows{{
     {"instances", "a second instance exists in the process of the port, also after the first"},
 }};
 
-FeatureSet only(Feature feature) { return FeatureSet().set(static_cast<std::size_t>(feature)); }
-
 FeatureSet if_true(bool used, Feature feature) { return used ? only(feature) : FeatureSet(); }
 
 template <typename Fields>

@@ -40,6 +40,12 @@ enum class Feature : std::uint8_t {
 };
 inline constexpr auto feature_count = static_cast<std::size_t>(Feature::instances) + 1;
 using FeatureSet = std::bitset<feature_count>;  // by enumerator
+inline FeatureSet only(Feature feature) {
+  return FeatureSet().set(static_cast<std::size_t>(feature));
+}
+inline bool contains(const FeatureSet& set, Feature feature) {
+  return set[static_cast<std::size_t>(feature)];
+}
 
 struct FeatureInfo {
   std::string_view name;  // "yaw_feed_forward", as a port declares it

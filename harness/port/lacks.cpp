@@ -78,7 +78,7 @@ Result<void> add_constant(const std::string& word, Lacks& lacks) {
 Result<void> add(const std::string& word, Lacks& lacks) {
   if (word.find('=') != std::string::npos) return add_constant(word, lacks);
   if (const auto feature = feature_named(word)) {
-    lacks.features.set(static_cast<std::size_t>(*feature));
+    lacks.features |= only(*feature);
     return {};
   }
   const ChannelSet outputs = outputs_named(word);

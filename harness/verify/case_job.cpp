@@ -81,10 +81,11 @@ bool CaseJob::is_repeated(const VectorResult& failed) const {
 
 bool CaseJob::must_start_again(std::size_t task, const VectorResult& result) const {
   if (host_->is_spent()) return true;
-  if (host_->declarations().lacks.features[static_cast<std::size_t>(Feature::instances)])
-    return true;
-  // An unsupported vector may have ended in a crash or a timeout.
-  if (!result.lacking.empty() && result.has_after_all.empty()) return true;
+  if (contains(host_->declarations().lacks.features, Feature::instances)) return true;
+  // A vector of a feature that the port lacks may have ended in a crash or a timeout. A flight of
+  // one is not flown.
+  const bool may_have_failed = !result.lacking.empty() && result.has_after_all.empty();
+  if (may_have_failed && !result.plant_configuration) return true;
   // What an instance with wrong outputs left behind is not known. But if a vector fails later, it
   // is repeated in a new process.
   if (!fails_a_run(result.verdict) || has_wrong_outputs(result)) return false;

@@ -60,7 +60,7 @@ FeatureSet lacking_features(const Lacks& lacks, const Trace& inputs,
                             const ModuleUnderTest& subject) {
   if (lacks.features.none()) return {};
   FeatureSet used = features_of(inputs, subject.profile);
-  used.set(static_cast<std::size_t>(Feature::instances), subject.instances != Instances::one);
+  if (subject.instances != Instances::one) used |= only(Feature::instances);
   return lacks.features & used;
 }
 

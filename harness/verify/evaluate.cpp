@@ -133,13 +133,13 @@ Result<VectorResult> evaluate_case(const Case& the_case, const Rate& rate, const
   if (has_other_steps(host.declarations(), the_case, rate, result)) return result;
   const Lacks& lacks = host.declarations().lacks;
   auto parameters = accepted_by(subject_of(the_case), options.parameters);
-  FeatureSet lacking;
-  if (lacks.any()) {
-    const Trace inputs = inputs_for(host.declarations(), the_case, rate);
-    if (!adds_constants(lacks, subject_of(the_case), inputs, parameters, result)) return result;
-  }
   const auto inputs = [&] { return inputs_for(host.declarations(), the_case, rate, parameters); };
-  if (lacks.any()) lacking = lacking_features(lacks, inputs(), subject_of(the_case));
+  if (!lacks.constants.empty() &&
+      !adds_constants(lacks, subject_of(the_case), inputs(), parameters, result)) {
+    return result;
+  }
+  const FeatureSet lacking =
+      lacks.features.any() ? lacking_features(lacks, inputs(), subject_of(the_case)) : FeatureSet();
   if (the_case.exact_only && level != Level::exact) {
     run_uncompared(inputs(), subject_of(the_case), host, result);
     leave_out(lacking, result);

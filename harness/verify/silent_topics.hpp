@@ -26,8 +26,8 @@ Result<void> leave_out_silent(const Lacks& lacks, Trace& flown, VectorResult& re
 
 // Decides about silent topics when all vectors were judged. If the port published the topic in no
 // vector of the profile, the first vector that needs it fails. Otherwise each vector fails that
-// needs it and lacks it. A vector that `is_excused` fails in addition, so that an expected failure
-// excuses no other vector.
+// needs it and lacks it. A vector whose failure `is_excused` fails in addition, so that an expected
+// failure excuses no other vector.
 void settle_silent_topics(
     std::vector<VectorResult>& results, const std::function<bool(const VectorResult&)>& is_excused =
                                             [](const VectorResult&) { return false; });

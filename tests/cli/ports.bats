@@ -149,6 +149,12 @@ TASKS
   has "fail: the port never publishes mc_att_ctrl_status, which "
   has "in out/mc_att_ctrl_status.published"
   lacks "it looks like"
+  # One expected failure does not excuse the other vectors.
+  printf '[expected]\n"px4-v1.5.5/actuators/circuit_breaker" = "no topic"\n' >known.toml
+  run "$ATTEST" run --port "lib:$PORTS/port_silent_topic.so" --profile px4-v1.5.5 --rate 250 \
+    --expected-failures known.toml
+  [ "$status" -eq 1 ]
+  has "FAIL 1 failed;"
 }
 
 @test "a profile that the port refuses is skipped, and nothing compared is not success" {

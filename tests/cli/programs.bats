@@ -143,6 +143,9 @@ starts_of() {
   [ "$status" -eq 1 ]
   has "FAIL 18 failed"
   [ "$(wc -l <starts)" -eq 6 ] # three failures were repeated alone
+  starts_of "program.py one_unit"
+  [ "$status" -eq 0 ]
+  [ "$(wc -l <starts)" -eq 22 ] # each vector has a process of its own
 }
 
 @test "a program that ends is a crash with its status, signal and last words" {

@@ -86,64 +86,61 @@ TEST(Features, AreNotUsedByTheBaseline) {
   }
 }
 
+struct Use {
+  Module module;
+  const char* feature;
+  std::function<void(Sample&)> of_last_tick;
+};
+const Use uses[] = {
+    {Module::mc_att_control, "acro",
+     [](Sample& s) { s.in.vehicle_control_mode.flag_control_attitude_enabled = 0; }},
+    {Module::mc_att_control, "acro",
+     [](Sample& s) {
+       s.in.vehicle_control_mode.flag_control_rattitude_enabled = 1;
+       s.in.manual_control_setpoint.x = 1.5f;
+     }},
+    {Module::mc_att_control, "offboard_rates",
+     [](Sample& s) {
+       s.in.vehicle_control_mode.flag_control_attitude_enabled = 0;
+       s.in.vehicle_control_mode.flag_control_manual_enabled = 0;
+     }},
+    {Module::mc_att_control, "mode_changes",
+     [](Sample& s) { s.in.vehicle_control_mode.flag_control_auto_enabled = 1; }},
+    {Module::mc_att_control, "vtol", [](Sample& s) { s.in.vehicle_status.is_vtol = 1; }},
+    {Module::attitude_unit, "autotune",
+     [](Sample& s) { s.attitude_in.autotune_attitude_control_status.state = 3; }},
+    {Module::attitude_law, "weathervane", [](Sample& s) { s.attitude_law.in.law.weathervane = 1; }},
+    {Module::rate_law, "tpa",
+     [](Sample& s) {
+       s.rate_law.in.rate_gains.tpa_slope = 1;
+       s.rate_law.in.rate_gains.tpa_break = 0.2f;
+     }},
+    {Module::mc_att_control, "saturation", [](Sample& s) { s.in.multirotor_motor_limits.yaw = 4; }},
+    {Module::mc_att_control, "yaw_feed_forward",
+     [](Sample& s) { s.in.vehicle_attitude_setpoint.yaw_sp_move_rate = -1; }},
+    {Module::attitude_unit, "sticks",
+     [](Sample& s) {
+       auto& mode = s.attitude_in.vehicle_control_mode;
+       mode = {};
+       mode.flag_control_manual_enabled = mode.flag_control_attitude_enabled = 1;
+     }},
+    {Module::attitude_unit, "estimator_reset",
+     [](Sample& s) { s.attitude_in.vehicle_attitude.quat_reset_counter = 1; }},
+    {Module::rate_unit, "saturation",
+     [](Sample& s) {
+       s.rate_in.control_allocator_status = {{0, 0, -0.1f}, 0};
+     }},
+    {Module::rate_unit, "landing",
+     [](Sample& s) { s.rate_in.vehicle_land_detected.maybe_landed = 1; }},
+    {Module::rate_unit, "arming", [](Sample& s) { s.rate_in.vehicle_control_mode.flag_armed = 0; }},
+    {Module::rate_unit, "non_finite",
+     [](Sample& s) {
+       s.rate_in.vehicle_rates_setpoint.yaw = std::numeric_limits<float>::quiet_NaN();
+     }},
+    {Module::rate_law, "rate_feed_forward", [](Sample& s) { s.rate_law.in.rate_gains.ff[1] = 1; }},
+};
+
 TEST(Features, AreUsedIfOneTickUsesThem) {
-  struct Use {
-    Module module;
-    const char* feature;
-    std::function<void(Sample&)> of_last_tick;
-  };
-  const Use uses[] = {
-      {Module::mc_att_control, "acro",
-       [](Sample& s) { s.in.vehicle_control_mode.flag_control_attitude_enabled = 0; }},
-      {Module::mc_att_control, "acro",
-       [](Sample& s) {
-         s.in.vehicle_control_mode.flag_control_rattitude_enabled = 1;
-         s.in.manual_control_setpoint.x = 1.5f;
-       }},
-      {Module::mc_att_control, "offboard_rates",
-       [](Sample& s) {
-         s.in.vehicle_control_mode.flag_control_attitude_enabled = 0;
-         s.in.vehicle_control_mode.flag_control_manual_enabled = 0;
-       }},
-      {Module::mc_att_control, "mode_changes",
-       [](Sample& s) { s.in.vehicle_control_mode.flag_control_auto_enabled = 1; }},
-      {Module::mc_att_control, "vtol", [](Sample& s) { s.in.vehicle_status.is_vtol = 1; }},
-      {Module::attitude_unit, "autotune",
-       [](Sample& s) { s.attitude_in.autotune_attitude_control_status.state = 3; }},
-      {Module::attitude_law, "weathervane",
-       [](Sample& s) { s.attitude_law.in.law.weathervane = 1; }},
-      {Module::rate_law, "tpa",
-       [](Sample& s) {
-         s.rate_law.in.rate_gains.tpa_slope = 1;
-         s.rate_law.in.rate_gains.tpa_break = 0.2f;
-       }},
-      {Module::mc_att_control, "saturation",
-       [](Sample& s) { s.in.multirotor_motor_limits.yaw = 4; }},
-      {Module::mc_att_control, "yaw_feed_forward",
-       [](Sample& s) { s.in.vehicle_attitude_setpoint.yaw_sp_move_rate = -1; }},
-      {Module::attitude_unit, "sticks",
-       [](Sample& s) {
-         auto& mode = s.attitude_in.vehicle_control_mode;
-         mode = {};
-         mode.flag_control_manual_enabled = mode.flag_control_attitude_enabled = 1;
-       }},
-      {Module::attitude_unit, "estimator_reset",
-       [](Sample& s) { s.attitude_in.vehicle_attitude.quat_reset_counter = 1; }},
-      {Module::rate_unit, "saturation",
-       [](Sample& s) {
-         s.rate_in.control_allocator_status = {{0, 0, -0.1f}, 0};
-       }},
-      {Module::rate_unit, "landing",
-       [](Sample& s) { s.rate_in.vehicle_land_detected.maybe_landed = 1; }},
-      {Module::rate_unit, "arming",
-       [](Sample& s) { s.rate_in.vehicle_control_mode.flag_armed = 0; }},
-      {Module::rate_unit, "non_finite",
-       [](Sample& s) {
-         s.rate_in.vehicle_rates_setpoint.yaw = std::numeric_limits<float>::quiet_NaN();
-       }},
-      {Module::rate_law, "rate_feed_forward",
-       [](Sample& s) { s.rate_law.in.rate_gains.ff[1] = 1; }},
-  };
   for (const auto& [module, feature, of_last_tick] : uses) {
     Trace trace = baseline_of(module);
     of_last_tick(trace.samples.back());

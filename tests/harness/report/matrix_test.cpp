@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "harness/report/accuracy.hpp"
 #include "tests/harness/report/sample_run.hpp"
 
 namespace attest {
@@ -100,6 +101,24 @@ TEST(Matrix, TheHeadroomIsTheSmallestOfThoseThatPassed) {
   EXPECT_EQ(rows[0].back().small, "12\u00d7");
   EXPECT_EQ(rows[0][2].small, "40\u00d7");
   EXPECT_EQ(rows[2].back().small, "");
+}
+
+TEST(Accuracy, HasTheLargestDeviationOfEachSignalAndItsGroups) {
+  RunResult run = passing_run();
+  EXPECT_FALSE(accuracy_of(run));
+  const auto roll = *find_channel(Module::mc_att_control, "out/vehicle_rates_setpoint.roll");
+  run.results[0].group = "attitude";
+  run.results[0].largest = {{roll, 1e-6}};
+  run.results[1].group = "large_angle";
+  run.results[1].largest = {{roll, 0.0021}};
+  run.results[2].verdict = Verdict::unsupported;
+  run.results[2].largest = {{roll, 7}};
+  const auto table = accuracy_of(run);
+  ASSERT_TRUE(table);
+  ASSERT_EQ(table->rows.size(), 1u);
+  EXPECT_EQ(table->rows[0][1].text, "rad/s");
+  EXPECT_EQ(table->rows[0][2].text, "0.0021");
+  EXPECT_EQ(table->rows[0][3].text, "large_angle 0.0021, attitude 1e-06");
 }
 
 }  // namespace

@@ -96,5 +96,23 @@ TEST_F(ReadReport, NumbersThatContradictTheResultsAreErrors) {
   EXPECT_EQ(with(stopped, "\"vectors\": 6", "\"vectors\": 7"), "");
 }
 
+TEST_F(ReadReport, WhatAPortLacksMustBeSettled) {
+  RunResult run = passing_run();
+  run.results[0].silent = {"rate_unit/rate_ctrl_status"};
+  EXPECT_THAT(error_of(json_report(run)),
+              HasSubstr("no vector failed because rate_unit/rate_ctrl_status is not published"));
+  run.results[1].silent = run.results[0].silent;
+  run.results[1].verdict = Verdict::fail;
+  EXPECT_EQ(error_of(json_report(run)), "");
+
+  run = passing_run();
+  run.results[0].lacking = {"sticks"};
+  EXPECT_THAT(error_of(json_report(run)), HasSubstr("lacks features, but is not unsupported"));
+  run.results[0].verdict = Verdict::unsupported;
+  EXPECT_THAT(error_of(json_report(run)), HasSubstr("which `port` does not have"));
+  run.lacks = *Lacks::parse(std::vector<std::string>{"sticks"});
+  EXPECT_EQ(error_of(json_report(run)), "");
+}
+
 }  // namespace
 }  // namespace attest

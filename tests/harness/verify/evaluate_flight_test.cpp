@@ -150,6 +150,52 @@ TEST_F(EvaluateFlight, ATraceOfAnotherFlightIsAFaultOfThePort) {
   EXPECT_THAT(result.reason, HasSubstr("timestamp at tick 95"));
 }
 
+class FlightOfALackingPort : public EvaluateFlight {
+ protected:
+  VectorResult result_of(const std::string& word, const ChangedFlight::Change& change) {
+    case_.flight->metrics = {metric_};
+    ChangedFlight host({&case_, iris_.get()}, change);
+    host.declarations_.lacks = *Lacks::parse(std::vector{word});
+    const auto timing = case_timing(case_, at_50.rate.motor_unit);
+    auto result = evaluate_timed_flight(case_, at_50, *iris_, timing, host);
+    EXPECT_TRUE(result) << result.error().to_string();
+    return result ? *std::move(result) : VectorResult{};
+  }
+};
+
+// What the port's process sends cannot excuse it.
+TEST_F(FlightOfALackingPort, UsesTheFeaturesOfTheReferencesFlight) {
+  const auto forged = [](Trace& flown) {
+    flown.samples[60].in.vehicle_attitude_setpoint.disable_mc_yaw_control = 1;
+  };
+  EXPECT_EQ(result_of("weathervane", forged).verdict, Verdict::protocol);
+}
+
+TEST_F(FlightOfALackingPort, IsNotFlownIfItUsesTheFeature) {
+  const VectorResult flown = result_of("rate_feed_forward", [](Trace&) {});
+  EXPECT_EQ(flown.verdict, Verdict::pass) << flown.reason;
+  case_.parameters.push_back({"MC_ROLLRATE_FF", Constant{0.1}});
+  const VectorResult result = result_of("rate_feed_forward", [](Trace&) { FAIL(); });
+  EXPECT_EQ(result.verdict, Verdict::unsupported);
+  EXPECT_EQ(result.reason, "the port declares that it lacks rate_feed_forward");
+  EXPECT_TRUE(result.has_after_all.empty());
+}
+
+TEST_F(FlightOfALackingPort, IsNotFlownWithoutAnOutputThatItNeeds) {
+  const VectorResult result = result_of("actuator_controls_0", [](Trace&) { FAIL(); });
+  EXPECT_EQ(result.verdict, Verdict::unsupported);
+  EXPECT_THAT(result.reason, HasSubstr("which a flight needs"));
+}
+
+TEST_F(FlightOfALackingPort, NeedsNoIntegrals) {
+  metric_.measure = Measure::peak_integral;
+  const auto without = [](Trace& flown) {
+    for (Sample& sample : flown.samples) sample.out.mc_att_ctrl_status = {};
+  };
+  EXPECT_EQ(result_of("mc_att_ctrl_status", without).verdict, Verdict::pass);
+  EXPECT_EQ(result_of("tpa", without).verdict, Verdict::fail);
+}
+
 TEST_F(EvaluateFlight, OneBitDeviatesOnlyAtTheLevelExact) {
   const auto result_at = [this](Level level) {
     level_ = level;

@@ -169,7 +169,9 @@ def main():
         answers.write(b"{" * 100_000)
         answers.flush()
         time.sleep(100)
-    if mode in ("counts_starts", "rolls"):
+    if mode == "one_unit":
+        HELLO["lacks"] = ["instances"]
+    if mode in ("counts_starts", "rolls", "one_unit"):
         with open(os.environ["STARTS"], "a", encoding="utf-8") as starts:
             starts.write("1\n")
     if mode == "hello_changes":
