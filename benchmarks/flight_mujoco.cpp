@@ -128,9 +128,9 @@ void bare_steps(benchmark::State& state, const LoopRate& rate) {
   }
 }
 
-// The flights of a sweep shared by threads: the time of one flight.
-void bare_steps_in_threads(benchmark::State& state, std::size_t threads) {
-  constexpr std::size_t flights = 64;
+// The flights of a sweep shared by two threads: the time of one flight.
+void two_threads(benchmark::State& state) {
+  constexpr std::size_t flights = 64, threads = 2;
   std::vector<std::unique_ptr<BareSteps>> steps;
   for (std::size_t i = 0; i < threads; ++i) {
     steps.push_back(std::make_unique<BareSteps>(Rate::hz(250)));
@@ -151,9 +151,6 @@ void bare_steps_in_threads(benchmark::State& state, std::size_t threads) {
     state.SetIterationTime(took.count() / static_cast<double>(flights));
   }
 }
-
-void one_thread(benchmark::State& state) { bare_steps_in_threads(state, 1); }
-void two_threads(benchmark::State& state) { bare_steps_in_threads(state, 2); }
 
 // The preparation of a flight after the vehicle was loaded.
 void set_up(benchmark::State& state) {
@@ -190,7 +187,6 @@ BENCHMARK_CAPTURE(bare_steps, of_sweep, Rate::hz(250))
     ->Name("sweep/mj_step")
     ->UseManualTime()
     ->Iterations(64);
-BENCHMARK(one_thread)->Name("sweep/mj_step_one")->UseManualTime()->Iterations(1);
 BENCHMARK(two_threads)->Name("sweep/mj_step_two")->UseManualTime()->Iterations(1);
 BENCHMARK(set_up)->Name("plant/set_up");
 BENCHMARK(bare_set_up)->Name("mujoco/set_up");

@@ -87,7 +87,6 @@ void fly_by_two_jobs(benchmark::State& state) { fly_sweep(state, 2, false); }
 BENCHMARK(reference)->Name("sweep/reference")->UseManualTime()->Iterations(1);
 BENCHMARK(with_port)->Name("sweep/with_port")->UseManualTime()->Iterations(1);
 BENCHMARK(fly_by_two_jobs)->Name("sweep/two_jobs")->UseManualTime()->Iterations(1);
-BENCHMARK(reference)->Name("sweep/one_job")->UseManualTime()->Iterations(1);
 
 }  // namespace
 }  // namespace attest::bench
