@@ -41,11 +41,11 @@ Result<void> check_reports(const ReplayOptions& options, const Globals& globals)
 }
 
 // One line per trace or unit, and a second one with the reason if it does not pass. `judged_by`:
-// the level, or "log".
+// "ticks, numeric" or "single steps, log".
 void print_result(const VectorResult& result, const std::string& title, std::string_view judged_by,
                   std::FILE* out) {
   fmt::print(out, "{:<12}{}  {}", name_of(result.verdict), title, result.profile);
-  if (result.ticks > 0) fmt::print(out, "  {} ticks, {}", result.ticks, judged_by);
+  if (result.ticks > 0) fmt::print(out, "  {} {}", result.ticks, judged_by);
   if (result.verdict == Verdict::pass && result.tightest) {
     fmt::print(out, ", tightest headroom {:.3g}x on {}", result.tightest->ratio,
                channels()[result.tightest->channel].name);
@@ -133,7 +133,7 @@ class Replay {
     entries_.push_back(json_of_trace(result, subject.module));
     const ChannelSet not_compared = channels_of(subject.module, "out/") & ~trace.present();
     if (result.verdict == Verdict::pass && globals_.quiet && not_compared.none()) return {};
-    print_result(result, result.name, name_of(level_), out_);
+    print_result(result, result.name, fmt::format("ticks, {}", name_of(level_)), out_);
     if (not_compared.any()) {
       fmt::print(out_, "  not compared, because the trace does not have them: {}\n",
                  fmt::join(names_of(not_compared), ", "));
@@ -178,7 +178,8 @@ class Replay {
     count(found.result);
     entries_.push_back(json_of_unit(log, unit, found, options_.log_limits));
     if (found.result.verdict == Verdict::pass && globals_.quiet) return {};
-    print_result(found.result, title_of(unit), "log", out_);
+    print_result(found.result, title_of(unit),
+                 found.single_steps ? "single steps, log" : "ticks, log", out_);
     fmt::print(out_, "{}", render_text(unit_table(unit, found, options_.log_limits), {}));
     return {};
   }

@@ -102,6 +102,8 @@ class Deviations {
     if (exact_.size() == most_exact) round_all();
   }
 
+  double largest() const { return largest_; }
+
   // Of each part: the deviation that this part does not exceed (nearest rank). Ascending parts.
   // REQUIRES: add() is not called again.
   std::vector<double> quantiles(std::initializer_list<double> parts) {
@@ -143,8 +145,9 @@ class Deviations {
 
 class Agreement {
  public:
-  Agreement(Topic topic, const TickWindow& window, const LogLimits& limits)
-      : topic_(std::move(topic)), window_(window), limits_(limits) {
+  Agreement(Topic topic, const TickWindow& window, const LogLimits& limits,
+            LogAgreement::Neighbours neighbours)
+      : topic_(std::move(topic)), window_(window), limits_(limits), neighbours_(neighbours) {
     found_.topic = topic_.name;
   }
 
@@ -179,6 +182,7 @@ class Agreement {
     }
     if (has_no_number(at)) ++found_.non_finite;
     const double largest = deviation_at(at, worst);
+    if (largest > deviations_.largest()) found_.worst = pair_at(at, worst);
     deviations_.add(largest);
     if (largest <= limits_.within)
       ++found_.within;
@@ -220,6 +224,7 @@ class Agreement {
   }
 
   bool is_between(std::size_t at) const {
+    if (neighbours_ == LogAgreement::Neighbours::say_nothing) return false;
     return std::all_of(topic_.fields.begin(), topic_.fields.end(), [&](std::size_t field) {
       const Channel& channel = channels()[field];
       if (deviation_at(at, field) <= limits_.within) return true;
@@ -230,20 +235,24 @@ class Agreement {
   }
 
   void note(std::size_t at, std::size_t field) {
-    if (found_.first_unexplained) return;
+    if (!found_.first_unexplained) found_.first_unexplained = pair_at(at, field);
+  }
+
+  LoggedPair pair_at(std::size_t at, std::size_t field) const {
     const Channel& channel = channels()[field];
     const std::uint64_t time_us = window_.logged[at].in.timestamp;
-    found_.first_unexplained = {window_.first_tick + at,
-                                time_us,
-                                static_cast<double>(time_us - window_.begin_us) * 1e-6,
-                                field,
-                                value_of(channel, window_.got[at]),
-                                value_of(channel, window_.logged[at])};
+    return {window_.first_tick + at,
+            time_us,
+            static_cast<double>(time_us - window_.begin_us) * 1e-6,
+            field,
+            value_of(channel, window_.got[at]),
+            value_of(channel, window_.logged[at])};
   }
 
   Topic topic_;
   const TickWindow& window_;
   LogLimits limits_;
+  LogAgreement::Neighbours neighbours_;
   Deviations deviations_;
   TopicAgreement found_;
 };
@@ -274,10 +283,10 @@ struct LogAgreement::Impl {
   }
 };
 
-LogAgreement::LogAgreement(const ChannelSet& logged, const LogLimits& limits)
+LogAgreement::LogAgreement(const ChannelSet& logged, const LogLimits& limits, Neighbours neighbours)
     : impl_(std::make_unique<Impl>()) {
   for (Topic& topic : topics_in(logged)) {
-    impl_->topics.emplace_back(std::move(topic), impl_->window, limits);
+    impl_->topics.emplace_back(std::move(topic), impl_->window, limits, neighbours);
   }
 }
 LogAgreement::LogAgreement(LogAgreement&&) noexcept = default;

@@ -36,10 +36,11 @@ struct LoggedPair {
 // One topic. Its deviation at a tick is the largest of its fields. NaN agrees with NaN only.
 struct TopicAgreement {
   std::string_view topic;
-  std::string not_judged;    // why it is reported but not judged; empty: it is judged
-  std::size_t left_out = 0;  // ticks whose logged output cannot be computed from the log
-  std::size_t paired = 0;    // the other ticks with an output in the log
-  std::size_t missing = 0;   // paired ticks at which the port did not publish
+  std::string condition = {};  // which of its samples; empty: all
+  std::string not_judged;      // why it is reported but not judged; empty: it is judged
+  std::size_t left_out = 0;    // ticks whose logged output cannot be computed from the log
+  std::size_t paired = 0;      // the other ticks with an output in the log
+  std::size_t missing = 0;     // paired ticks at which the port did not publish
   // Ticks at which log and port have an output, and the port has NaN or infinity where the log has
   // a number. A tick that is left out counts too, if the reference is finite there. One is enough
   // for the port not to agree.
@@ -54,6 +55,7 @@ struct TopicAgreement {
   // reference's, because a port with wild values would widen its own.
   std::size_t between_samples = 0;
   std::optional<LoggedPair> first_unexplained;
+  std::optional<LoggedPair> worst;  // the first with the largest deviation, of those with numbers
 
   std::size_t unexplained() const { return paired - within - between_samples; }
   double part_within() const;  // of the paired ticks, 0..1
@@ -64,8 +66,13 @@ struct TopicAgreement {
 // Takes the traces part by part. Its memory does not grow with their number.
 class LogAgreement {
  public:
+  // Whether a deviation can be explained by the two neighbours of a tick. Not if the ticks do not
+  // follow each other.
+  enum class Neighbours : std::uint8_t { explain, say_nothing };
+
   // `logged`: the channels of the log.
-  LogAgreement(const ChannelSet& logged, const LogLimits& limits);
+  LogAgreement(const ChannelSet& logged, const LogLimits& limits,
+               Neighbours neighbours = Neighbours::explain);
   LogAgreement(LogAgreement&&) noexcept;
   LogAgreement& operator=(LogAgreement&&) noexcept;
   ~LogAgreement();

@@ -65,15 +65,20 @@ std::string part_text(std::size_t count, const TopicAgreement& topic) {
   return fmt::format("{:.1f}%", 100 * static_cast<double>(count) / paired);
 }
 
-std::vector<Cell> row_of(const TopicAgreement& topic, const LoggedOutput& logged,
-                         const LogLimits& limits) {
+std::string title_of(const TopicAgreement& topic) {
+  return topic.condition.empty() ? std::string(topic.topic)
+                                 : fmt::format("{}, {}", topic.topic, topic.condition);
+}
+
+// `logged`: the samples of the topic in the log.
+std::vector<Cell> row_of(const TopicAgreement& topic, std::size_t logged, const LogLimits& limits) {
   const Cell verdict = topic.not_judged.empty()
                            ? Cell(topic.agrees(limits) ? "agrees" : "differs",
                                   topic.agrees(limits) ? Verdict::pass : Verdict::fail)
                            : Cell("not judged");
-  return {std::string(topic.topic),
+  return {title_of(topic),
           verdict,
-          fmt::format("{} of {}", topic.paired, logged.samples),
+          fmt::format("{} of {}", topic.paired, logged),
           fmt::format("{:.3g}", topic.median),
           fmt::format("{:.3g}", topic.p90),
           fmt::format("{:.3g}", topic.p99),
@@ -83,29 +88,31 @@ std::vector<Cell> row_of(const TopicAgreement& topic, const LoggedOutput& logged
           part_text(topic.unexplained(), topic)};
 }
 
-// The lines about a topic. `said`: the reason of the verdict, which is not repeated.
-void add_lines(const LoggedUnit& unit, const TopicAgreement& topic, const LoggedOutput& logged,
-               const LogLimits& limits, const std::string& said, std::vector<Cell>& lines) {
+// The lines about the deviations of a topic. `said`: the reason of the verdict, which is not
+// repeated.
+void add_deviations(const TopicAgreement& topic, const LogLimits& limits, const std::string& said,
+                    std::vector<Cell>& lines) {
   const auto add = [&]<typename... T>(fmt::format_string<T...> text, T&&... values) {
     lines.emplace_back(fmt::format(text, std::forward<T>(values)...));
   };
   const auto add_part = [&](std::size_t count, const std::string& what) {
     add("  {:6} {:>6}  {}", count, part_text(count, topic), what);
   };
-  add("{}: {} of {} logged samples paired with a {}", topic.topic, logged.paired, logged.samples,
-      unit.step_topic);
-  if (topic.left_out > 0) {
-    add("  {} of them left out: the log does not have all that they depend on", topic.left_out);
-  }
   if (topic.paired > 0) {
-    add("  off by: median {:.3g}, 90% up to {:.3g}, 99% up to {:.3g}, largest {:.3g}", topic.median,
-        topic.p90, topic.p99, topic.largest);
+    add("  off by: median {:.3g}, 90% up to {:.3g}, 99% up to {:.3g}, largest {:.3g}{}",
+        topic.median, topic.p90, topic.p99, topic.largest,
+        topic.worst ? fmt::format(" at {:.3f} s in {}",
+                                  1e-6 * static_cast<double>(topic.worst->timestamp_us),
+                                  channels()[topic.worst->channel].name)
+                    : "");
     add_part(topic.within, fmt::format("within {:g}", limits.within));
   }
   if (topic.within != topic.paired) {
-    add_part(topic.between_samples,
-             "explained: port and log are within the reference's values at this and the two "
-             "neighbouring samples");
+    if (topic.condition.empty()) {
+      add_part(topic.between_samples,
+               "explained: port and log are within the reference's values at this and the two "
+               "neighbouring samples");
+    }
     add_part(topic.unexplained(), "not explained");
     if (topic.missing > 0) add_part(topic.missing, "not published by the port");
     if (topic.non_finite > 0) {
@@ -115,12 +122,32 @@ void add_lines(const LoggedUnit& unit, const TopicAgreement& topic, const Logged
   if (!topic.not_judged.empty()) {
     add("  not judged{}{}", topic.not_judged == said ? "" : ": ",
         topic.not_judged == said ? "" : topic.not_judged);
-  } else if (const auto& pair = topic.first_unexplained) {
-    const Channel& channel = channels()[pair->channel];
-    add("  first one not explained: tick {}, {:.3f} s after tick 0, in {}", pair->tick,
-        pair->after_s, channel_with_unit(channel));
-    add("    got    {}", value_text(channel, pair->got));
-    add("    logged {}", value_text(channel, pair->logged));
+  } else if (topic.first_unexplained) {
+    const LoggedPair& pair = *topic.first_unexplained;
+    const Channel& channel = channels()[pair.channel];
+    add("  first one not explained: tick {}, {:.3f} s after tick 0, in {}", pair.tick, pair.after_s,
+        channel_with_unit(channel));
+    add("    got    {}", value_text(channel, pair.got));
+    add("    logged {}", value_text(channel, pair.logged));
+  }
+}
+
+// The lines about the ticks of a unit of which the log has `logged`.
+void add_ticks(const LoggedUnit& unit, const TopicAgreement& topic, const LoggedOutput& logged,
+               std::vector<Cell>& lines) {
+  lines.emplace_back(fmt::format("{}: {} of {} logged samples paired with a {}", topic.topic,
+                                 logged.paired, logged.samples, unit.step_topic));
+  if (topic.left_out == 0) return;
+  lines.emplace_back(fmt::format(
+      "  {} of them left out: the log does not have all that they depend on", topic.left_out));
+}
+
+void add_single_steps(const SingleSteps& steps, std::vector<Cell>& lines) {
+  lines.emplace_back(fmt::format("{} of {} logged steps have all their inputs in the log",
+                                 steps.with_own_setpoint + steps.with_given_setpoint,
+                                 steps.logged));
+  for (const auto& [why, outputs] : steps.left_out) {
+    lines.emplace_back(fmt::format("  {:6} left out: {}", outputs, why));
   }
 }
 
@@ -155,14 +182,16 @@ ordered_json pair_of(const LoggedPair& pair) {
           {"logged", json_of(pair.logged)}};
 }
 
-ordered_json topic_of(const TopicAgreement& topic, const LoggedOutput& logged,
+// `logged`, `paired`: samples of the topic in the log; of these, those of a tick.
+ordered_json topic_of(const TopicAgreement& topic, std::size_t logged, std::size_t paired,
                       const LogLimits& limits) {
   ordered_json out = {{"topic", topic.topic},
+                      {"condition", topic.condition},
                       {"judged", topic.not_judged.empty()},
                       {"not_judged", topic.not_judged},
                       {"agrees", topic.agrees(limits)},
-                      {"logged", logged.samples},
-                      {"paired", logged.paired},
+                      {"logged", logged},
+                      {"paired", paired},
                       {"left_out", topic.left_out},
                       {"within", topic.within},
                       {"between_samples", topic.between_samples},
@@ -174,7 +203,20 @@ ordered_json topic_of(const TopicAgreement& topic, const LoggedOutput& logged,
                       {"p99", json_of(topic.p99)},
                       {"largest", json_of(topic.largest)}};
   if (topic.first_unexplained) out["first_unexplained"] = pair_of(*topic.first_unexplained);
+  if (topic.worst) out["worst"] = pair_of(*topic.worst);
   return out;
+}
+
+ordered_json json_of_steps(const SingleSteps& steps) {
+  ordered_json left_out = ordered_json::array();
+  for (const auto& [why, outputs] : steps.left_out) {
+    left_out.push_back({{"why", why}, {"outputs", outputs}});
+  }
+  return {{"logged", steps.logged},
+          {"with_own_setpoint", steps.with_own_setpoint},
+          {"with_given_setpoint", steps.with_given_setpoint},
+          {"oldest_setpoint_us", steps.oldest_us},
+          {"left_out", left_out}};
 }
 
 }  // namespace
@@ -190,9 +232,17 @@ DocumentTable unit_table(const LoggedUnit& unit, const LogResult& result, const 
       {"topic", "", "paired", "median", "90%", "99%", "largest", "within", "between samples",
        "not explained"}};
   table.rows_in_text = 0;
+  if (result.single_steps) add_single_steps(*result.single_steps, table.below);
   for (std::size_t i = 0; i < result.topics.size(); ++i) {
-    table.rows.push_back(row_of(result.topics[i], unit.outputs[i], limits));
-    add_lines(unit, result.topics[i], unit.outputs[i], limits, result.result.reason, table.below);
+    const TopicAgreement& topic = result.topics[i];
+    if (result.single_steps) {
+      table.rows.push_back(row_of(topic, result.single_steps->logged, limits));
+      table.below.emplace_back(title_of(topic));
+    } else {
+      table.rows.push_back(row_of(topic, unit.outputs[i].samples, limits));
+      add_ticks(unit, topic, unit.outputs[i], table.below);
+    }
+    add_deviations(topic, limits, result.result.reason, table.below);
   }
   return table;
 }
@@ -210,14 +260,16 @@ Document log_document(const FlightLog& log, const std::vector<LogResult>& result
     const LoggedUnit& unit = log.units[i];
     const VectorResult& result = results[i].result;
     const std::string title(info_of(unit.module).title);
-    ticks.push_back(fmt::format("{} ticks", unit.trace.samples.size()));
+    const Trace& logged = results[i].single_steps ? results[i].want : unit.trace;
+    ticks.push_back(fmt::format("{} {}", logged.samples.size(),
+                                results[i].single_steps ? "single steps" : "ticks"));
     document.facts.push_back({title, std::string(name_of(result.verdict))});
     if (!result.reason.empty()) {
       document.notes.push_back({title + ": " + result.reason, fails_a_run(result.verdict)});
     }
     if (!results[i].topics.empty()) document.tables.push_back(unit_table(unit, results[i], limits));
-    if (unit.trace.samples.empty()) continue;
-    document.groups.push_back(plots_of_outputs(unit.trace, results[i].got, "logged",
+    if (logged.samples.empty()) continue;
+    document.groups.push_back(plots_of_outputs(logged, results[i].got, "logged",
                                                fmt::format("Outputs of the {}", title)));
   }
   document.head = {verdict, std::string(name_of(verdict)), log.units.front().trace.source,
@@ -259,8 +311,13 @@ ordered_json json_of_unit(const FlightLog& log, const LoggedUnit& unit, const Lo
   entry["has_every_step"] = unit.has_every_step;
   entry["topics"] = ordered_json::array();
   for (std::size_t i = 0; i < result.topics.size(); ++i) {
-    entry["topics"].push_back(topic_of(result.topics[i], unit.outputs[i], limits));
+    const TopicAgreement& topic = result.topics[i];
+    entry["topics"].push_back(
+        result.single_steps
+            ? topic_of(topic, result.single_steps->logged, topic.paired, limits)
+            : topic_of(topic, unit.outputs[i].samples, unit.outputs[i].paired, limits));
   }
+  if (result.single_steps) entry["single_steps"] = json_of_steps(*result.single_steps);
   entry["notes"] = log.notes;
   return entry;
 }

@@ -118,6 +118,7 @@ std::optional<double> fastest_hz(const ModuleContents& log) {
 
 void judge_steps(const StepGaps& gaps, std::optional<double> rate_hz, LoggedUnit& unit) {
   unit.not_judged = too_sparse(unit.module, gaps, rate_hz);
+  unit.period_us = gaps.period_us;
   unit.has_every_step = unit.has_every_step && unit.not_judged.empty() &&
                         may_be_complete(unit.module, gaps, rate_hz) && !unit.begins_in_flight;
 }
@@ -188,8 +189,8 @@ class TicksInMemory final : public LoggedTicks {
     auto read = parts_.next_part(most, part);
     const std::size_t ticks = part.samples.size();
     part.parameters = changes_in(parameters_, next_, ticks);
-    const auto begin = unit_.known.begin() + static_cast<std::ptrdiff_t>(next_);
-    known_.assign(begin, begin + static_cast<std::ptrdiff_t>(ticks));
+    const auto begin = unit_.setpoints.begin() + static_cast<std::ptrdiff_t>(next_);
+    setpoints_.assign(begin, begin + static_cast<std::ptrdiff_t>(ticks));
     next_ += ticks;
     return read;
   }
@@ -257,7 +258,7 @@ class LogReading {
     if (!assumed_.empty() || rules != LogRules::attest) used = assume(assumed_, log, first);
     for (const std::string& word : used) add_once(word, used_);
     const auto rate_hz = fastest_hz(log);
-    const StepGaps gaps = log.step_gaps();
+    const StepGaps gaps = log.step_gaps(rate_hz);
     auto unit = unit_of_log(std::move(log), first, rules, path_.string());
     if (!unit) return unit;
     if (log_.dropouts > 0 || !log_.damage.empty()) unit->has_every_step = false;
@@ -292,7 +293,7 @@ Result<FlightLog> read_flight_log(const std::filesystem::path& path,
     const auto ticks = std::exchange(unit.ticks, nullptr);
     auto read = ticks->next_part(std::numeric_limits<std::size_t>::max(), unit.trace);
     if (!read) return tl::unexpected(read.error());
-    unit.known = ticks->known();
+    unit.setpoints = ticks->setpoints();
   }
   return log;
 }

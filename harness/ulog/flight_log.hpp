@@ -23,8 +23,9 @@ namespace attest {
 // The number of samples of an output topic.
 struct LoggedOutput {
   std::string topic;
-  std::size_t samples = 0;  // published by this unit
-  std::size_t paired = 0;   // of these, assigned to a tick
+  std::size_t samples = 0;      // published by this unit
+  std::size_t paired = 0;       // of these, assigned to a tick
+  std::size_t other_wings = 0;  // published by others, in fixed-wing flight or a transition to it
 };
 
 // Whether the log shows the setpoint that the unit follows at a tick.
@@ -34,18 +35,41 @@ enum class Known : std::uint8_t {
   nothing         // no: the log has no setpoint, or no mode, up to this tick
 };
 
+// The setpoint that the unit follows at a tick, as far as the log shows it.
+struct LoggedSetpoint {
+  Known known = Known::all;
+  std::uint64_t time_us = 0;  // of the last logged sample of the setpoint; 0: there is none
+  bool is_own = false;        // of a single step: the unit made the setpoint from the sticks
+
+  bool operator==(const LoggedSetpoint&) const = default;
+};
+
 // The ticks of a unit of a log, part by part.
 class LoggedTicks : public TraceParts {
  public:
   // Of each tick of the part last read.
-  const std::vector<Known>& known() const { return known_; }
+  const std::vector<LoggedSetpoint>& setpoints() const { return setpoints_; }
 
   // The changes of parameters in the parts; at first those of the log.
   void set_parameters(std::vector<ParameterChange> changes) { parameters_ = std::move(changes); }
 
  protected:
-  std::vector<Known> known_;
+  std::vector<LoggedSetpoint> setpoints_;
   std::vector<ParameterChange> parameters_;
+};
+
+// What the single steps of a unit are, and which logged outputs are not among them.
+struct SingleSteps {
+  struct LeftOut {
+    std::string why;
+    std::size_t outputs = 0;
+  };
+
+  std::size_t with_own_setpoint = 0;    // steps whose setpoint the unit made from the sticks
+  std::size_t with_given_setpoint = 0;  // the other steps
+  std::uint64_t oldest_us = 0;          // setpoints that were given are younger at their step
+  std::size_t logged = 0;               // outputs in the log: of rates, or of integrals
+  std::vector<LeftOut> left_out;        // the other outputs
 };
 
 struct LoggedUnit {
@@ -57,8 +81,8 @@ struct LoggedUnit {
   // the output of the tick before. An output field that the log does not have is not in
   // `trace.present`. An input field that it does not have is there, as LogField::if_absent.
   Trace trace;
-  std::vector<Known> known;  // of each tick
-  // Unless null: the ticks, which are then neither in `trace` nor in `known`.
+  std::vector<LoggedSetpoint> setpoints;  // of each tick
+  // Unless null: the ticks, which are then neither in `trace` nor in `setpoints`.
   std::shared_ptr<LoggedTicks> ticks;
   std::vector<LoggedOutput> outputs;
   // True if nothing shows that the log lacks a step of the unit. For a log of v1.14 to v1.18, it
@@ -66,6 +90,9 @@ struct LoggedUnit {
   // steps (the integral, the derivative) cannot be computed exactly from the log.
   bool has_every_step = false;
   bool begins_in_flight = false;  // then the unit's state at the first tick is not known
+  double period_us = 0;  // of the loop, estimated; 0: not known, because the log does not limit it
+  // Set if the ticks are those of single_steps_of().
+  std::optional<SingleSteps> single_steps;
   // Why the outputs that depend on earlier steps cannot be computed, even approximately. Empty if
   // they can be. If the log has too little for the unit, this says why, and the trace has no ticks.
   std::string not_judged;

@@ -50,7 +50,10 @@ class ModuleContents {
   // Counts the last sample that `reader` read. REQUIRES: `series` is one of series(), and accepts
   // it.
   void count(LogSeries& series, const Reader& reader, const Data& data);
-  StepGaps step_gaps() const { return gap_counts_.gaps(); }
+  // `fastest_hz`: as for GapCounts::gaps().
+  StepGaps step_gaps(std::optional<double> fastest_hz) const {
+    return gap_counts_.gaps(fastest_hz);
+  }
   const SampleOrder& order() const { return order_; }
 
   std::vector<ParameterChange> parameters;  // `tick`: the number of steps logged before the change

@@ -23,18 +23,24 @@ class PendingRows {
   // Copies the last sample of the topic before the step at `time` to `sample`, if it is newer than
   // that of the previous call. Forgets the samples up to there. `last`: the sample of the previous
   // step; at the first step, the sample before it.
-  void advance_to(std::uint64_t time, const Sample& last, Sample& sample) {
+  // Returns its time.
+  std::optional<std::uint64_t> advance_to(std::uint64_t time, const Sample& last, Sample& sample) {
     std::optional<std::size_t> newest;
     for (bool is_first = true; next_ < series_.size() && is_there(next_, time); is_first = false) {
       const std::size_t row = next_++;
       if (!is_first || !is_own(row, last)) newest = row;
     }
+    std::optional<std::uint64_t> newest_us;
     if (newest) {
       series_.copy(*newest, sample);
       sample.in.updated |= updated_;
+      newest_us = series_.time(*newest);
     }
     series_.forget_before(next_);
+    return newest_us;
   }
+
+  const std::string& name() const { return series_.name(); }
 
   // Forgets all samples, because no step follows.
   void forget() { series_.forget_before(series_.size()); }
@@ -66,7 +72,11 @@ class PendingRows {
 class LoggedSteps::Inputs {
  public:
   // `first`: the sample before the first step.
-  Inputs(LoggedModule& from) : steps_(from.log.steps()), last_(from.first), held_(from.first) {
+  Inputs(LoggedModule& from)
+      : steps_(from.log.steps()),
+        setpoint_topic_(info_of(from.log.module()).setpoint_topic),
+        last_(from.first),
+        held_(from.first) {
     for (LogSeries& series : from.log.series()) {
       if (series.is_output() || &series == &steps_) continue;
       topics_.emplace_back(series, from.log.module(), from.rules);
@@ -78,13 +88,16 @@ class LoggedSteps::Inputs {
     const std::uint64_t time = steps_.time(tick_);
     const auto sample_time = steps_.sample_time(tick_);
     Sample now = held_;
-    for (PendingRows& rows : topics_) rows.advance_to(time, last_, now);
+    for (PendingRows& rows : topics_) {
+      const auto newest_us = rows.advance_to(time, last_, now);
+      if (newest_us && rows.name() == setpoint_topic_) setpoint_us_ = *newest_us;
+    }
     steps_.copy(tick_++, now);
     steps_.forget_before(tick_);
     now.in.timestamp = time;
     held_ = last_ = now;
     held_.in.updated = 0;
-    return {last_, sample_time};
+    return {last_, sample_time, setpoint_us_};
   }
 
   void forget() {
@@ -93,6 +106,8 @@ class LoggedSteps::Inputs {
 
  private:
   LogSeries& steps_;
+  std::string_view setpoint_topic_;
+  std::uint64_t setpoint_us_ = 0;
   std::vector<PendingRows> topics_;
   Sample last_;
   Sample held_;  // the inputs of the last step, of which none is new
@@ -114,15 +129,15 @@ Result<LoggedSteps> LoggedSteps::open(LoggedModule& from) {
   return LoggedSteps(from, *std::move(reader));
 }
 
-Result<Sample> LoggedSteps::next() {
+Result<PairedStep> LoggedSteps::next() {
   while (read_ < from_.steps && last_steps_.size() < most_last_steps) {
     if (auto read = read_step(); !read) return tl::unexpected(read.error());
   }
-  Sample sample = last_steps_.front().sample;
+  PairedStep step = last_steps_.front();
   last_steps_.pop_front();
-  for (const PairedOutput& output : outputs_) output.repeat(before_, sample);
-  before_ = sample;
-  return sample;
+  for (const PairedOutput& output : outputs_) output.repeat(before_, step.sample);
+  before_ = step.sample;
+  return step;
 }
 
 Result<void> LoggedSteps::read_step() {

@@ -32,7 +32,7 @@ class LoggedSteps {
   ~LoggedSteps();
 
   // REQUIRES: it was called less than LoggedModule::steps times.
-  Result<Sample> next();
+  Result<PairedStep> next();
 
   // Complete after the last step.
   const std::vector<PairedOutput>& outputs() const { return outputs_; }

@@ -28,12 +28,21 @@ bool publishes(Module module, std::string_view topic, const Sample& sample) {
                ? is_of_sticks(sample)
                : AttitudeStages::runs(topics_of(sample.attitude_in));
   }
-  if (module == Module::rate_unit && topic == "vehicle_rates_setpoint") {
-    cascade::RateTopics topics;
-    topics.mode = sample.rate_in.vehicle_control_mode;
-    return cascade::RateStepStages<float>::is_acro(topics);
-  }
+  if (module == Module::rate_unit && topic == "vehicle_rates_setpoint") return is_acro(sample);
   return true;
+}
+
+bool is_acro(const Sample& sample) {
+  cascade::RateTopics topics;
+  topics.mode = sample.rate_in.vehicle_control_mode;
+  return cascade::RateStepStages<float>::is_acro(topics);
+}
+
+bool flies_by_rotors(Module module, const Sample& sample) {
+  if (module == Module::rate_unit) return sample.rate_in.vehicle_status.is_rotary_wing != 0;
+  cascade::AttitudeTopics topics = topics_of(sample.attitude_in);
+  topics.mode.flag_control_attitude_enabled = 1;
+  return AttitudeStages::runs(topics);
 }
 
 bool is_in_flight(Module module, const Sample& sample) {

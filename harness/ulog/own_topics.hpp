@@ -21,6 +21,14 @@ bool publishes(Module module, std::string_view topic, const Sample& sample);
 // REQUIRES: a sample of the attitude unit.
 bool is_of_sticks(const Sample& sample);
 
+// Whether the vehicle flies as a multicopter, or as a tailsitter in a transition, so that these
+// units fly it. REQUIRES: a unit of the cascade.
+bool flies_by_rotors(Module module, const Sample& sample);
+
+// Whether the rate unit makes its setpoint from the sticks (acro mode). REQUIRES: a sample of the
+// rate unit.
+bool is_acro(const Sample& sample);
+
 // Whether the vehicle is armed and off the ground, according to the inputs. REQUIRES: a unit
 // of the cascade.
 bool is_in_flight(Module module, const Sample& sample);

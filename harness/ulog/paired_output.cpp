@@ -34,7 +34,11 @@ void PairedOutput::pair_until(std::optional<std::uint64_t> end, PairedSteps& ste
 }
 
 void PairedOutput::pair(std::size_t row, PairedSteps& steps) {
-  if (is_of_others(steps)) return;
+  if (is_of_others(steps)) {
+    const bool is_known = !steps.empty() && !flies_by_rotors(module_, steps.back().sample);
+    logged_.other_wings += is_known ? 1 : 0;
+    return;
+  }
   ++logged_.samples;
   PairedStep* const step = step_of(row, steps);
   if (step == nullptr || value_of(published_, step->sample) != 0) return;

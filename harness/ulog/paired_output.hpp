@@ -15,6 +15,7 @@ namespace attest::ulog {
 struct PairedStep {
   Sample sample;
   std::optional<std::uint64_t> sample_time;  // LogSeries::sample_time()
+  std::uint64_t setpoint_us = 0;             // LoggedSetpoint::time_us
 };
 
 // The last steps, to which outputs can be paired.

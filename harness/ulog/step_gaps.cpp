@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -31,7 +32,26 @@ void GapCounts::add(std::uint64_t time_us) {
   last_us_ = time_us;
 }
 
-StepGaps GapCounts::gaps() const {
+// A logger takes one step of several, so each gap is a multiple of the loop's period. Returns the
+// period of which the gaps are nearest to multiples. An IMU gives only some rates, so a loop can be
+// slower than its limit by up to half.
+double GapCounts::period_us(double shortest_us) const {
+  constexpr double slowest = 1.5, ratio = 1.0025;
+  double best_us = 0, least = std::numeric_limits<double>::infinity();
+  for (double period = shortest_us; period < slowest * shortest_us; period *= ratio) {
+    double squares = 0;
+    for (const auto& [gap, count] : counts_) {
+      const double periods = static_cast<double>(gap) / period;
+      const double off = periods - std::round(periods);
+      squares += static_cast<double>(count) * off * off;
+    }
+    if (squares < least) best_us = period;
+    least = std::min(least, squares);
+  }
+  return best_us;
+}
+
+StepGaps GapCounts::gaps(std::optional<double> fastest_hz) const {
   StepGaps found{steps_};
   if (counts_.empty()) return found;
   std::size_t up_to = 0;  // the number of gaps that are at most this long
@@ -47,6 +67,7 @@ StepGaps GapCounts::gaps() const {
     if (periods > 1) found.missing += count * (static_cast<std::size_t>(periods) - 1);
   }
   found.longest_us = counts_.rbegin()->first;
+  if (fastest_hz) found.period_us = period_us(us_per_s / *fastest_hz);
   return found;
 }
 

@@ -16,6 +16,7 @@ struct StepGaps {
   double median_us = 0;   // of the times between them; 0 with fewer than two steps
   std::uint64_t longest_us = 0;
   std::size_t missing = 0;  // estimate: a gap of n medians (rounded) lacks n - 1 steps
+  double period_us = 0;     // of the loop, estimated; 0: not known
 
   double part_missing() const;  // missing / (steps + missing), 0..1
 };
@@ -26,9 +27,12 @@ class GapCounts {
  public:
   // REQUIRES: later than the time before.
   void add(std::uint64_t time_us);
-  StepGaps gaps() const;
+  // `fastest_hz`: the loop is not faster; without it, its period is not estimated.
+  StepGaps gaps(std::optional<double> fastest_hz = {}) const;
 
  private:
+  double period_us(double shortest_us) const;
+
   std::size_t steps_ = 0;
   std::uint64_t last_us_ = 0;
   std::map<std::uint64_t, std::size_t> counts_;  // gap -> how often

@@ -77,13 +77,13 @@ class TicksOfLog final : public LoggedTicks {
     part.source = from_.file;
     part.present = present_;
     part.samples.clear();
-    known_.clear();
+    setpoints_.clear();
     const std::size_t first = tick_;
     while (tick_ < from_.steps && part.samples.size() < most) {
       const auto step = steps_->next();
       if (!step) return tl::unexpected(step.error());
-      part.samples.push_back(completed(*step));
-      known_.push_back(setpoint_.next(part.samples.back()));
+      part.samples.push_back(completed(step->sample));
+      setpoints_.push_back({setpoint_.next(part.samples.back()), step->setpoint_us});
     }
     part.parameters = changes_in(parameters_, first, part.samples.size());
     return {};
@@ -139,7 +139,7 @@ class TicksOfLog final : public LoggedTicks {
     for (std::size_t tick = 0; tick < from_.steps; ++tick) {
       const auto step = steps->next();
       if (!step) return tl::unexpected(step.error());
-      if (tick == 0) look_at_first(*step);
+      if (tick == 0) look_at_first(step->sample);
     }
     for (const PairedOutput& output : steps->outputs()) outputs_.push_back(output.logged());
     return {};

@@ -11,8 +11,10 @@
 
 #include "harness/golden/recorded.hpp"
 #include "harness/golden/reference.hpp"
-#include "harness/port/profiles.hpp"
+#include "harness/ulog/single_steps.hpp"
+#include "harness/verify/evaluate_single_steps.hpp"
 #include "harness/verify/judge.hpp"
+#include "harness/verify/replayed_log.hpp"
 
 namespace attest {
 namespace {
@@ -25,73 +27,8 @@ bool has_memory(Module module, const TopicAgreement& topic) {
   return module == Module::rate_unit || topic.topic != memoryless;
 }
 
-using Parameters = std::vector<ParameterChange>;
-
-Parameters without_those_of_others(const ModuleUnderTest& subject, Parameters parameters) {
-  const auto own = parameter_names(subject.module, subject.profile);
-  std::erase_if(parameters, [&](const ParameterChange& change) {
-    return std::find(own.begin(), own.end(), change.name) == own.end();
-  });
-  return parameters;
-}
-
-// The log's parameters, with those that the port gets in their place.
-Parameters parameters_of_port(const LoggedUnit& log, const Parameters& given) {
-  Trace trace;
-  trace.parameters = log.trace.parameters;
-  for (const ParameterChange& change : given) override_parameter(change, trace);
-  return trace.parameters;
-}
-
-// Returns `of_port`, in which the parameters that the log has get the log's values.
-Parameters with_those_of_log(const LoggedUnit& log, const Parameters& of_port) {
-  const auto& logged = log.trace.parameters;
-  const auto is_logged = [&](const ParameterChange& change) {
-    return std::any_of(logged.begin(), logged.end(),
-                       [&](const ParameterChange& one) { return one.name == change.name; });
-  };
-  Parameters parameters;
-  std::copy_if(of_port.begin(), of_port.end(), std::back_inserter(parameters),
-               [&](const ParameterChange& change) { return !is_logged(change); });
-  parameters.insert(parameters.end(), logged.begin(), logged.end());
-  std::stable_sort(parameters.begin(), parameters.end(),
-                   [](const auto& a, const auto& b) { return a.tick < b.tick; });
-  return parameters;
-}
-
-template <typename Take>
-Result<std::size_t> for_each_part_of(LoggedTicks& ticks, std::size_t most_ticks, Take take) {
-  return ticks.rewind().and_then([&] { return for_each_part(ticks, most_ticks, take); });
-}
-
 // How well the reference agrees with a log; empty if it cannot answer.
 using OfReference = std::optional<std::vector<TopicAgreement>>;
-
-// An instance of a port that gets the inputs of a log.
-class Replayed {
- public:
-  Replayed(PortHost& host, ModuleUnderTest subject, const Parameters& parameters)
-      : host_(host), subject_(std::move(subject)), parameters_(parameters) {}
-
-  // The inputs of a part, without outputs.
-  Trace inputs(const Trace& logged, std::size_t first_tick) const {
-    Trace inputs = logged;
-    inputs.parameters = changes_in(parameters_, first_tick, logged.samples.size());
-    for (Sample& sample : inputs.samples) sample.clear_outputs();
-    return inputs;
-  }
-
-  // Adds the outputs. The instance is made for the first part, and ends with the last.
-  std::optional<PortFault> answer(Trace& inputs, std::size_t first_tick, bool is_last) {
-    subject_.part = {first_tick, is_last};
-    return host_.drive(subject_, inputs);
-  }
-
- private:
-  PortHost& host_;
-  ModuleUnderTest subject_;
-  const Parameters& parameters_;
-};
 
 std::string why_it_fails(const TopicAgreement& topic, const LogLimits& limits) {
   if (topic.non_finite > 0) {
@@ -107,9 +44,9 @@ std::string why_it_fails(const TopicAgreement& topic, const LogLimits& limits) {
                      100 * topic.part_unexplained(), topic.topic, 100 * limits.most_unexplained);
 }
 
-std::vector<bool> ticks_but(const std::vector<Known>& ticks, Known most) {
+std::vector<bool> ticks_but(const std::vector<LoggedSetpoint>& ticks, Known most) {
   std::vector<bool> leaves_out;
-  for (const Known known : ticks) leaves_out.push_back(known > most);
+  for (const LoggedSetpoint& setpoint : ticks) leaves_out.push_back(setpoint.known > most);
   return leaves_out;
 }
 
@@ -136,7 +73,7 @@ class Comparable {
   bool has_reference() const { return has_reference_; }
 
   // The ticks to leave out, of these.
-  std::vector<bool> leaves_out(const std::vector<Known>& ticks) const {
+  std::vector<bool> leaves_out(const std::vector<LoggedSetpoint>& ticks) const {
     return ticks_but(ticks, most_);
   }
 
@@ -195,8 +132,10 @@ class Comparable {
   std::vector<TopicAgreement> of_reference_;
 };
 
+// Leaves the verdict of a port with a fault.
 void judge_topics(const std::vector<TopicAgreement>& topics, const LogLimits& limits,
                   VectorResult& result) {
+  if (result.verdict != Verdict::pass) return;
   for (const TopicAgreement& topic : topics) {
     const bool is_non_finite = topic.non_finite > 0;  // wrong also if earlier steps are not known
     if (!is_non_finite && (!topic.not_judged.empty() || topic.agrees(limits))) continue;
@@ -216,26 +155,26 @@ void judge_topics(const std::vector<TopicAgreement>& topics, const LogLimits& li
 class LogJudge {
  public:
   LogJudge(const LoggedUnit& log, ModuleUnderTest subject, const LogLimits& limits,
-           const Parameters& given, std::size_t most_ticks)
+           const LogParameters& parameters, std::size_t most_ticks)
       : log_(log),
         ticks_(ticks_of(log)),
         subject_(std::move(subject)),
         limits_(limits),
         most_ticks_(most_ticks),
-        of_port_(without_those_of_others(subject_, parameters_of_port(log, given))),
-        as_flown_(without_those_of_others(subject_, with_those_of_log(log, of_port_))) {}
+        parameters_(parameters) {}
 
   // Empty if the reference has a fault, for example because it does not have the profile.
   Result<OfReference> of_reference(Known most) {
     const auto host = open_reference();
-    Replayed reference(*host, subject_, as_flown_);
+    ReplayedPort reference(*host, subject_, parameters_.as_flown);
     LogAgreement agreement(log_.trace.present, limits_);
     std::optional<PortFault> fault;
     const auto read = for_each_part_of(
         *ticks_, most_ticks_, [&](const Trace& logged, std::size_t at, bool is_last) {
           Trace answered = reference.inputs(logged, at);
           fault = reference.answer(answered, at, is_last);
-          if (!fault) agreement.add(answered, logged, answered, ticks_but(ticks_->known(), most));
+          if (!fault)
+            agreement.add(answered, logged, answered, ticks_but(ticks_->setpoints(), most));
           return !fault;
         });
     if (!read) return tl::unexpected(read.error());
@@ -247,7 +186,8 @@ class LogJudge {
   Result<std::optional<PortFault>> drive(PortHost& port, const Comparable& comparable,
                                          LogResult& found) {
     const auto host = open_reference();
-    Replayed reference(*host, subject_, as_flown_), judged(port, subject_, of_port_);
+    ReplayedPort reference(*host, subject_, parameters_.as_flown);
+    ReplayedPort judged(port, subject_, parameters_.of_port);
     LogAgreement agreement(log_.trace.present, limits_);
     std::optional<PortFault> fault;
     const auto ticks = for_each_part_of(
@@ -258,7 +198,7 @@ class LogJudge {
           fault = judged.answer(got, at, is_last);
           if (!log_.ticks) append(got, found.got);
           if (fault) return false;
-          const auto leaves_out = comparable.leaves_out(ticks_->known());
+          const auto leaves_out = comparable.leaves_out(ticks_->setpoints());
           agreement.add(got, logged, as_flown, leaves_out);
           return true;
         });
@@ -282,38 +222,70 @@ class LogJudge {
   ModuleUnderTest subject_;
   const LogLimits& limits_;
   std::size_t most_ticks_;
-  Parameters of_port_, as_flown_;
+  const LogParameters& parameters_;
 };
 
-}  // namespace
+std::string why_no_step(const SingleSteps& steps, const std::string& not_judged) {
+  const auto most =
+      std::max_element(steps.left_out.begin(), steps.left_out.end(),
+                       [](const auto& a, const auto& b) { return a.outputs < b.outputs; });
+  std::string why = not_judged.empty() ? "" : not_judged + "; ";
+  why += "no single step has all its inputs in the log";
+  if (most == steps.left_out.end()) return why;
+  return why + fmt::format(": {} of {} outputs are {}", most->outputs, steps.logged, most->why);
+}
 
-Result<LogResult> evaluate_log(const LoggedUnit& log, const std::string& profile, PortHost& host,
-                               const LogLimits& limits,
-                               const std::vector<ParameterChange>& parameters,
-                               std::size_t most_ticks) {
-  LogResult found{result_for(log.trace.source, profile), {}, {}};
-  VectorResult& result = found.result;
-  if (marks_declined(host.declarations(), result)) return found;
-  if (!log.ticks && log.trace.samples.empty()) {
-    result.verdict = Verdict::skip;
-    result.reason = log.not_judged;
-    return found;
-  }
+// The log as it is, tick by tick.
+Result<void> compare_ticks(const LoggedUnit& log, const ModuleUnderTest& subject, PortHost& host,
+                           const LogLimits& limits, const LogParameters& parameters,
+                           std::size_t most_ticks, LogResult& found) {
   found.got.source = log.trace.source;
   found.got.present = log.trace.present;
-  LogJudge judging(log, {profile, log.module}, limits, parameters, most_ticks);
+  LogJudge judging(log, subject, limits, parameters, most_ticks);
   const auto comparable =
       Comparable::of(log, limits, [&](Known most) { return judging.of_reference(most); });
   if (!comparable) return tl::unexpected(comparable.error());
   const auto fault = judging.drive(host, *comparable, found);
   if (!fault) return tl::unexpected(fault.error());
-  if (*fault) {
-    judge(**fault, result);
+  if (*fault) judge(**fault, found.result);
+  for (TopicAgreement& topic : found.topics) topic.not_judged = comparable->why_not(topic);
+  return {};
+}
+
+}  // namespace
+
+Result<LogResult> evaluate_log(const LoggedUnit& log, const std::string& profile, PortHost& host,
+                               const LogLimits& limits, const std::vector<ParameterChange>& given,
+                               std::size_t most_ticks) {
+  const ModuleUnderTest subject{profile, log.module};
+  const LogResult nothing{result_for(log.trace.source, profile), {}, {}, {}, {}};
+  LogResult found = nothing;
+  if (marks_declined(host.declarations(), found.result)) return found;
+  if (!log.ticks && log.trace.samples.empty()) {
+    found.result.verdict = Verdict::skip;
+    found.result.reason = log.not_judged;
     return found;
   }
-  for (TopicAgreement& topic : found.topics) topic.not_judged = comparable->why_not(topic);
-  judge_topics(found.topics, limits, result);
-  return found;
+  const bool has_single_steps = info_of(log.module).is_of_cascade();
+  if (!has_single_steps || log.not_judged.empty()) {
+    const LogParameters parameters(log, subject, given);
+    auto compared = compare_ticks(log, subject, host, limits, parameters, most_ticks, found);
+    if (!compared) return tl::unexpected(compared.error());
+    judge_topics(found.topics, limits, found.result);
+    if (found.result.verdict != Verdict::skip || !has_single_steps) return found;
+  }
+  const auto steps = single_steps_of(log);
+  if (!steps) return tl::unexpected(steps.error());
+  LogResult of_steps = nothing;
+  const LogParameters parameters(*steps, subject, given);
+  auto compared = compare_single_steps(*steps, subject, host, limits, parameters, most_ticks,
+                                       !log.ticks, of_steps);
+  if (!compared) return tl::unexpected(compared.error());
+  VectorResult& result = of_steps.result;
+  judge_topics(of_steps.topics, limits, result);
+  if (of_steps.topics.empty()) result.reason = why_no_step(*of_steps.single_steps, log.not_judged);
+  const bool shows_more = result.verdict != Verdict::skip || found.result.reason.empty();
+  return shows_more ? of_steps : found;
 }
 
 }  // namespace attest

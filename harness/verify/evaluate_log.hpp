@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "harness/compare/log_agreement.hpp"
@@ -15,9 +16,10 @@ namespace attest {
 struct LogResult {
   VectorResult result;  // verdict and reason
   std::vector<TopicAgreement> topics;
-  // With the port's outputs; up to the fault, if there was one. Only for a log that is in memory as
-  // a whole; else empty.
-  Trace got;
+  std::optional<SingleSteps> single_steps;  // if set, only these steps were compared
+  // What was compared: the log's outputs, and the port's up to its fault, if there was one. Only
+  // for a log that is in memory as a whole; else empty.
+  Trace want, got;
 };
 
 // Gives the inputs of one unit of a log to a fresh instance and compares its outputs with the
@@ -33,9 +35,11 @@ struct LogResult {
 //   control_allocator_status), or another law flew.
 // - If attest does not have the profile, the log is not compared with the reference.
 // - NaN or infinity where the log has a number fails in every output (Verdict::non_finite).
+// - If the log of a unit of v1.14 to v1.18 lacks too many steps for all this, its single steps are
+//   judged (ulog/single_steps.hpp, evaluate_single_steps.hpp).
 //
-// If no output is judged, the verdict is skip. The port gets `parameters` instead of the log's
-// parameters of the same names. The reference gets those of `parameters` that the log does not
+// If no output is judged, the verdict is skip. The port gets the parameters `given` instead of the
+// log's parameters of the same names. The reference gets those of `given` that the log does not
 // have. Parameters that the unit does not have in this profile are left out. A log shows few
 // situations, so a pass is no statement of conformance.
 //
@@ -43,7 +47,7 @@ struct LogResult {
 // LoggedTicks::next_part().
 Result<LogResult> evaluate_log(const LoggedUnit& log, const std::string& profile, PortHost& host,
                                const LogLimits& limits,
-                               const std::vector<ParameterChange>& parameters = {},
+                               const std::vector<ParameterChange>& given = {},
                                std::size_t most_ticks = ticks_at_once);
 
 }  // namespace attest

@@ -57,7 +57,7 @@ std::uint64_t sum_of_log(const std::filesystem::path& file, std::size_t size) {
 
 void check_unit(const LoggedUnit& unit) {
   if (!unit.not_judged.empty()) require_readable(unit.not_judged);
-  require(unit.known.size() == unit.trace.samples.size(), "each tick has what is known of it");
+  require(unit.setpoints.size() == unit.trace.samples.size(), "each tick has what is known of it");
   std::uint64_t last = 0;
   for (const Sample& sample : unit.trace.samples) {
     require(sample.in.timestamp > last || &sample == unit.trace.samples.data(),

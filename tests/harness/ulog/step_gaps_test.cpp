@@ -37,6 +37,18 @@ TEST(StepGaps, CountsWhatIsMissing) {
                         "apart, at most 21 ms"));
 }
 
+// A loop of 1.5 ms that may run at 800 Hz, of which a log has about one step in 14.
+TEST(StepGaps, ThePeriodOfTheLoopDividesTheGaps) {
+  GapCounts times;
+  std::uint64_t time = 1000;
+  for (std::size_t i = 0; i < 200; ++i) {
+    times.add(time + i % 3);  // a timestamp may be late by 2 us
+    time += (i % 7 == 0 ? 12 : 14) * 1500;
+  }
+  EXPECT_NEAR(times.gaps(800).period_us, 1500, 5);
+  EXPECT_EQ(times.gaps().period_us, 0);
+}
+
 TEST(StepGaps, ALogSlowerThanAnyLoopIsTooSparse) {
   EXPECT_EQ(too_sparse(Module::rate_unit, step_gaps(times(100, 20000)), {}),
             "the log has a gyro sample every 20 ms, and the loop runs at 100 Hz or more; the "

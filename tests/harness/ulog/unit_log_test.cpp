@@ -112,7 +112,7 @@ TEST_F(LogOfPx4, HasTheSameTicksInParts) {
     ASSERT_TRUE(for_each_part(*ticks, most, [&](const Trace& part, std::size_t, bool) {
       for (std::size_t i = 0; i < part.samples.size(); ++i, ++tick) {
         EXPECT_EQ(std::memcmp(&part.samples[i], &unit.trace.samples[tick], sizeof(Sample)), 0);
-        EXPECT_EQ(ticks->known()[i], unit.known[tick]);
+        EXPECT_EQ(ticks->setpoints()[i], unit.setpoints[tick]);
       }
       return true;
     }));
@@ -144,7 +144,9 @@ TEST_F(LogOfPx4, HasTwoUnits) {
   // The setpoint of the attitude unit is the input of the rate unit, from the next step on.
   EXPECT_EQ(rate.trace.samples[1].rate_in.vehicle_rates_setpoint.roll, 1000);
   EXPECT_EQ(rate.trace.samples[2].rate_in.vehicle_rates_setpoint.roll, 5000);
-  EXPECT_THAT(rate.known, ElementsAre(Known::nothing, Known::all, Known::all));
+  EXPECT_THAT(rate.setpoints,
+              ElementsAre(LoggedSetpoint{Known::nothing, 0}, LoggedSetpoint{Known::all, 1100},
+                          LoggedSetpoint{Known::all, 5100}));
 }
 
 TEST_F(LogOfPx4, AnInputIsThereFromTheNextStepOn) {
@@ -187,8 +189,10 @@ TEST_F(LogOfPx4, ASetpointOfTheSticksIsAnOutput) {
   EXPECT_EQ(own(1).published, 1);
   EXPECT_EQ(own(1).q_d[1], 0.75f);
   EXPECT_EQ(own(2).published, 0);
-  EXPECT_THAT(unit.known,
-              ElementsAre(Known::all, Known::if_every_step, Known::if_every_step, Known::all));
+  EXPECT_THAT(
+      unit.setpoints,
+      ElementsAre(LoggedSetpoint{Known::all, 900}, LoggedSetpoint{Known::if_every_step, 900},
+                  LoggedSetpoint{Known::if_every_step, 900}, LoggedSetpoint{Known::all, 9080}));
 }
 
 TEST_F(LogOfPx4, ARatesSetpointInAcroModeIsOfTheRateUnit) {

@@ -31,7 +31,7 @@ LoggedUnit log_of(Module module, const char* step_topic) {
 // Adds the reference's outputs, as logged outputs of these topics.
 void add_outputs(const char* law, std::initializer_list<const char*> topics, LoggedUnit& log) {
   const std::size_t ticks = log.trace.samples.size();
-  log.known.assign(ticks, Known::all);
+  log.setpoints.assign(ticks, {Known::all, 0});
   InProcessHost reference(open_builtin());
   EXPECT_FALSE(reference.drive({law, log.module}, log.trace));
   for (const char* topic : topics) log.outputs.push_back({topic, ticks, ticks});
@@ -103,7 +103,7 @@ LoggedUnit logged_controller() {
 TEST(EvaluateLog, PartsOfAnySizeGiveTheSameResult) {
   LoggedUnit log = logged_rate_unit();
   log.trace.parameters = {{0, "MC_ROLLRATE_P", 0.15f}, {201, "MC_ROLLRATE_P", 0.18f}};
-  for (std::size_t tick = 0; tick < 50; ++tick) log.known[tick] = Known::nothing;
+  for (std::size_t tick = 0; tick < 50; ++tick) log.setpoints[tick].known = Known::nothing;
   for (const char* port : {"builtin", "fault:cascade-i-missing"}) {
     const auto in_parts_of = [&](std::size_t most) {
       InProcessHost host(*open_port(port));
@@ -203,14 +203,108 @@ TEST(EvaluateLog, ASparseLogDoesNotJudge) {
   log.not_judged = "too sparse";
   const LogResult found = result_of(log, "fault:cascade-i-missing");
   EXPECT_EQ(found.result.verdict, Verdict::skip);
-  EXPECT_EQ(found.result.reason, "too sparse");
-  EXPECT_EQ(found.topics[0].not_judged, "too sparse");
+  EXPECT_THAT(found.result.reason, HasSubstr("too sparse; no single step has all its inputs"));
+}
+
+// The log has every sixteenth step of a rate unit of 800 Hz, and the setpoints of these steps.
+LoggedUnit sparse_log() {
+  LoggedUnit every_step = log_of(Module::rate_unit, "vehicle_angular_velocity");
+  for (std::uint64_t tick = 0; tick < 1600; ++tick) {
+    Sample sample;
+    const float time_s = 1.25e-3F * static_cast<float>(tick);
+    attest_rate_inputs& in = sample.rate_in;
+    in.timestamp = 5'000'000 + 1'250 * tick;
+    in.updated = tick == 0 ? 0xff : ATTEST_RATE_UPDATED_VEHICLE_RATES_SETPOINT;
+    in.vehicle_angular_velocity.timestamp_sample = in.timestamp - 300;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      in.vehicle_angular_velocity.xyz[axis] = std::sin((20 + static_cast<float>(axis)) * time_s);
+    }
+    in.vehicle_rates_setpoint = {0.5F, -0.25F, 0.125F, {0, 0, -0.5F - 0.1F * time_s}};
+    in.vehicle_control_mode = {1, 0, 1, 1};
+    in.vehicle_status.is_rotary_wing = 1;
+    every_step.trace.samples.push_back(sample);
+  }
+  InProcessHost reference(open_builtin());
+  EXPECT_FALSE(reference.drive({law_of_log, Module::rate_unit}, every_step.trace));
+  LoggedUnit log = log_of(Module::rate_unit, "vehicle_angular_velocity");
+  for (std::size_t tick = 16; tick < 1600; tick += 16) {
+    log.trace.samples.push_back(every_step.trace.samples[tick]);
+    log.setpoints.push_back({Known::all, every_step.trace.samples[tick].in.timestamp - 1000});
+  }
+  log.trace.samples.front().in.updated = 0xff;
+  const std::size_t ticks = log.trace.samples.size();
+  for (const char* topic : {"vehicle_torque_setpoint", "vehicle_thrust_setpoint",
+                            "rate_ctrl_status", "vehicle_rates_setpoint"}) {
+    log.outputs.push_back({topic, ticks, ticks, 0});
+  }
+  log.not_judged = "too sparse";
+  log.period_us = 1250;
+  return log;
+}
+
+TEST(EvaluateLog, ASparseLogJudgesItsSingleSteps) {
+  const LoggedUnit log = sparse_log();
+  const LogResult right = result_of(log);
+  EXPECT_EQ(right.result.verdict, Verdict::pass) << right.result.reason;
+  ASSERT_TRUE(right.single_steps);
+  EXPECT_EQ(right.single_steps->with_given_setpoint, 99u);
+  ASSERT_EQ(right.topics.size(), 2u);
+  EXPECT_EQ(right.topics[0].topic, "vehicle_torque_setpoint");
+  EXPECT_EQ(right.topics[0].condition, "setpoint younger than 1.1 ms");
+  EXPECT_EQ(right.topics[0].paired, 99u);
+  EXPECT_LT(right.topics[0].largest, 1e-6);  // with the integral that the step used
+  ASSERT_TRUE(right.topics[0].worst);
+  EXPECT_EQ(right.topics[0].worst->timestamp_us,
+            log.trace.samples[right.topics[0].worst->tick].in.timestamp);
+  // A single step does not show what the integral does.
+  EXPECT_EQ(result_of(log, "fault:cascade-i-missing").result.verdict, Verdict::pass);
+  EXPECT_EQ(result_of(log, "fault:cascade-rate-in-degrees").result.verdict, Verdict::fail);
+}
+
+TEST(EvaluateLog, TheReferenceShowsUpToWhichAgeSetpointsWereInUse) {
+  LoggedUnit log = sparse_log();
+  for (std::size_t tick = 0; tick < log.trace.samples.size(); tick += 2) {
+    log.setpoints[tick].time_us -= 7000;  // with the same thrust as the setpoint in use
+    log.trace.samples[tick].rate_in.vehicle_rates_setpoint.roll += 0.1F;
+  }
+  const LogResult right = result_of(log);
+  EXPECT_EQ(right.result.verdict, Verdict::pass) << right.result.reason;
+  EXPECT_EQ(right.single_steps->oldest_us, 1100u);
+  EXPECT_EQ(right.single_steps->with_given_setpoint, 49u);
+  EXPECT_EQ(right.single_steps->left_out.back().outputs, 50u);
+  EXPECT_EQ(right.result.ticks, 49u);
+}
+
+TEST(EvaluateLog, WithoutThePeriodTheIntegralIsThatAfterTheStep) {
+  LoggedUnit log = sparse_log();
+  log.period_us = 0;
+  EXPECT_GT(result_of(log).topics[0].largest, 1e-4);
+}
+
+TEST(EvaluateLog, SingleStepsOfAnotherLawDoNotJudge) {
+  LoggedUnit log = sparse_log();
+  for (Sample& sample : log.trace.samples) {
+    for (float& torque : sample.rate_out.vehicle_torque_setpoint.xyz) torque *= 1.5F;
+  }
+  const LogResult found = result_of(log);
+  EXPECT_EQ(found.result.verdict, Verdict::skip);
+  EXPECT_THAT(found.result.reason, HasSubstr("another law flew, or a modified one"));
+}
+
+TEST(EvaluateLog, AFewSingleStepsDoNotJudge) {
+  LoggedUnit log = sparse_log();
+  log.trace.samples.resize(19);
+  log.setpoints.resize(19);
+  const LogResult found = result_of(log, "fault:cascade-rate-in-degrees");
+  EXPECT_EQ(found.result.verdict, Verdict::skip);
+  EXPECT_EQ(found.result.reason,
+            "the log has all inputs of only 19 steps, and at least 20 are needed");
 }
 
 TEST(EvaluateLog, TicksThatTheLogDoesNotExplainAreLeftOut) {
   LoggedUnit log = logged_rate_unit();
   for (std::size_t tick = 0; tick < 100; ++tick) {
-    log.known[tick] = Known::nothing;
+    log.setpoints[tick].known = Known::nothing;
     log.trace.samples[tick].rate_out.vehicle_thrust_setpoint.xyz[2] = 0.5f;
   }
   const LogResult found = result_of(log);

@@ -1,0 +1,327 @@
+#include "harness/verify/evaluate_single_steps.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "controller/cascade/profile.hpp"
+#include "harness/core/agreement.hpp"
+#include "harness/golden/reference.hpp"
+#include "harness/verify/judge.hpp"
+
+namespace attest {
+namespace {
+
+// Fewer may agree by chance.
+constexpr std::size_t least_steps = 20;
+
+// The outputs that the law computes from the inputs of the step alone.
+ChannelSet compared_outputs(const LoggedUnit& steps, const std::string& profile) {
+  ChannelSet compared = steps.trace.present;
+  const Module module = steps.module;
+  compared &= ~channels_of(module, "out/rate_ctrl_status.");
+  const auto known = cascade::profile_from_name(profile);
+  if (module == Module::rate_unit && (!known || cascade::traits_of(*known).filters_yaw_torque)) {
+    compared.reset(*find_channel(module, "out/vehicle_torque_setpoint.xyz[2]"));
+  }
+  return compared;
+}
+
+// Why no step of the unit can be judged alone; empty if it can.
+std::string remembers_setpoints(Module module, const std::string& profile) {
+  const auto known = cascade::profile_from_name(profile);
+  const bool remembers = module == Module::attitude_unit && known &&
+                         cascade::traits_of(*known).follows_reference_model;
+  return remembers ? fmt::format(
+                         "the reference model of {} depends on all earlier setpoints, and "
+                         "the log does not have every step",
+                         profile)
+                   : "";
+}
+
+// The integral that a step used, as part of the torque: see evaluate_single_steps.hpp.
+class IntegralInUse {
+ public:
+  // `period_us`: of the loop; 0: not known.
+  explicit IntegralInUse(double period_us) : period_us_(period_us) {}
+
+  // Removes it from the torque of the next tick of a log. `reference`: the reference's outputs; its
+  // integral begins each step at 0, so it is the increment after the step.
+  void remove_from(Sample& logged, const Sample& reference) {
+    const auto now = logged.rate_in.vehicle_angular_velocity.timestamp_sample;
+    // The reference's dt (LAW-CASCADE 6.1). The loop's own is not in the log.
+    const double dt_us = std::clamp(static_cast<double>(now - last_us_), 125.0, 20000.0);
+    last_us_ = now;
+    const auto& battery = logged.rate_in.battery_status;
+    const double scale = battery.connected != 0 ? static_cast<double>(battery.scale) : 1;
+    const auto after = integrals(logged), increments = integrals(reference);
+    for (std::size_t axis = 0; axis < after.size(); ++axis) {
+      const auto [least, most] =
+          std::minmax({after[axis], after[axis] - increments[axis] * period_us_ / dt_us});
+      float& torque = logged.rate_out.vehicle_torque_setpoint.xyz[axis];
+      const double rest = reference.rate_out.vehicle_torque_setpoint.xyz[axis];
+      const double used = std::clamp((static_cast<double>(torque) - rest) / scale, least, most);
+      torque = static_cast<float>(static_cast<double>(torque) - scale * used);
+    }
+  }
+
+ private:
+  static std::array<double, 3> integrals(const Sample& sample) {
+    const auto& status = sample.rate_out.rate_ctrl_status;
+    return {status.rollspeed_integ, status.pitchspeed_integ, status.yawspeed_integ};
+  }
+
+  double period_us_;
+  std::uint64_t last_us_ = 0;
+};
+
+// Finds the age up to which the setpoints of the log were in use, by the reference: it agrees with
+// the log only where they were. The thrust does not show this where several setpoints have the
+// same.
+class AgeLimit {
+ public:
+  void add(std::uint64_t age_us, bool agrees) {
+    ++(agrees ? counts_[age_us / width_us].agree : counts_[age_us / width_us].differ);
+    ++all_;
+  }
+
+  // `most_us` if the reference does not agree with enough steps up to any age.
+  std::uint64_t limit_us(std::uint64_t most_us, double most_unexplained) const {
+    constexpr std::size_t least_part = 10;  // fewer than one in ten may agree by chance
+    std::uint64_t limit = most_us;
+    std::size_t agree = 0, differ = 0;
+    for (const auto& [bin, count] : counts_) {
+      agree += count.agree;
+      differ += count.differ;
+      const auto steps = static_cast<double>(agree + differ);
+      const bool are_enough = agree >= least_steps && agree * least_part >= all_;
+      if (are_enough && static_cast<double>(differ) <= most_unexplained * steps) {
+        limit = (bin + 1) * width_us;
+      }
+    }
+    return std::min(limit, most_us);
+  }
+
+ private:
+  struct Count {
+    std::size_t agree = 0, differ = 0;
+  };
+  static constexpr std::uint64_t width_us = 100;
+
+  std::map<std::uint64_t, Count> counts_;  // by age, in units of width_us
+  std::size_t all_ = 0;
+};
+
+// The steps of one kind, in which port and reference are compared with the log.
+struct StepKind {
+  bool has_own_setpoint;
+  std::string condition;
+  std::size_t steps = 0;
+  LogAgreement of_port, of_reference;
+};
+
+Trace only(const Trace& all, const std::vector<bool>& wanted) {
+  Trace some;
+  for (std::size_t i = 0; i < all.samples.size(); ++i) {
+    if (wanted[i]) some.samples.push_back(all.samples[i]);
+  }
+  return some;
+}
+
+void append(const Trace& part, Trace& whole) {
+  whole.samples.insert(whole.samples.end(), part.samples.begin(), part.samples.end());
+}
+
+// Gives the steps to the port and to the reference.
+class SingleStepJudge {
+ public:
+  SingleStepJudge(const LoggedUnit& steps, const ModuleUnderTest& subject, const LogLimits& limits,
+                  const LogParameters& parameters, std::size_t most_ticks)
+      : steps_(steps),
+        subject_(subject),
+        limits_(limits),
+        parameters_(parameters),
+        most_ticks_(most_ticks),
+        compared_(compared_outputs(steps, subject.profile)),
+        oldest_us_(steps.single_steps->oldest_us) {}
+
+  // Finds out which steps are compared, with the reference alone.
+  Result<void> find_steps() {
+    AgeLimit ages;
+    const auto host = open_reference();
+    ReplayedPort reference(*host, subject_, parameters_.as_flown);
+    IntegralInUse integral(steps_.period_us);
+    const auto read = for_each_part_of(
+        *steps_.ticks, most_ticks_, [&](const Trace& logged, std::size_t at, bool is_last) {
+          Trace as_flown = reference.inputs(logged, at);
+          has_reference_ = !reference.answer(as_flown, at, is_last);
+          if (!has_reference_) return false;
+          for (std::size_t i = 0; i < logged.samples.size(); ++i) {
+            Sample want = logged.samples[i];
+            remove_integral(integral, as_flown.samples[i], want);
+            const LoggedSetpoint& setpoint = steps_.ticks->setpoints()[i];
+            if (!setpoint.is_own)
+              ages.add(age_of(want, setpoint), agree(as_flown.samples[i], want));
+          }
+          return true;
+        });
+    if (!read) return tl::unexpected(read.error());
+    if (has_reference_) oldest_us_ = ages.limit_us(oldest_us_, limits_.most_unexplained);
+    return {};
+  }
+
+  // Sets the traces of `found` if they are wanted, and its verdict if the port has a fault.
+  Result<void> compare(PortHost& port, bool keeps_traces, LogResult& found) {
+    make_kinds();
+    const auto host = open_reference();
+    ReplayedPort reference(*host, subject_, parameters_.as_flown);
+    ReplayedPort judged(port, subject_, parameters_.of_port);
+    IntegralInUse integral(steps_.period_us);
+    found.want.source = found.got.source = steps_.trace.source;
+    found.want.present = found.got.present = compared_;
+    std::optional<PortFault> fault;
+    const auto read = for_each_part_of(
+        *steps_.ticks, most_ticks_, [&](const Trace& logged, std::size_t at, bool is_last) {
+          Trace want = logged, as_flown = reference.inputs(logged, at);
+          Trace got = judged.inputs(logged, at);
+          if (has_reference_) reference.answer(as_flown, at, is_last);
+          fault = judged.answer(got, at, is_last);
+          for (std::size_t i = 0; i < want.samples.size(); ++i) {
+            remove_integral(integral, as_flown.samples[i], want.samples[i]);
+          }
+          if (keeps_traces) append(want, found.want);
+          if (keeps_traces) append(got, found.got);
+          if (!fault) add(want, got, as_flown);
+          return !fault;
+        });
+    if (!read) return tl::unexpected(read.error());
+    if (fault) judge(*fault, found.result);
+    for (const StepKind& kind : kinds_) found.result.ticks += kind.steps;
+    return {};
+  }
+
+  std::vector<TopicAgreement> topics() {
+    std::vector<TopicAgreement> all;
+    for (StepKind& kind : kinds_) {
+      if (kind.steps == 0) continue;
+      const auto of_reference = kind.of_reference.finish();
+      auto of_port = kind.of_port.finish();
+      // Torque and thrust are judged together: the thrust is a copy, and shows little.
+      std::string why = remembers_setpoints(subject_.module, subject_.profile);
+      for (std::size_t i = 0; i < of_port.size() && why.empty(); ++i) {
+        why = why_not(kind, of_port[i], of_reference[i]);
+      }
+      for (TopicAgreement& topic : of_port) {
+        topic.condition = kind.condition;
+        topic.not_judged = why;
+        all.push_back(std::move(topic));
+      }
+    }
+    return all;
+  }
+
+  // Those that were compared.
+  SingleSteps steps() const {
+    SingleSteps steps = *steps_.single_steps;
+    const std::size_t given = kinds_.front().steps;
+    if (const std::size_t older = steps.with_given_setpoint - given; older > 0) {
+      steps.left_out.push_back({fmt::format("with a setpoint of {:.1f} ms and more, with which the "
+                                            "reference does not agree",
+                                            static_cast<double>(oldest_us_) / 1e3),
+                                older});
+    }
+    steps.with_given_setpoint = given;
+    steps.oldest_us = oldest_us_;
+    return steps;
+  }
+
+ private:
+  static std::uint64_t age_of(const Sample& step, const LoggedSetpoint& setpoint) {
+    return step.in.timestamp - setpoint.time_us;
+  }
+
+  void make_kinds() {
+    const auto agreement = [&] {
+      return LogAgreement(compared_, limits_, LogAgreement::Neighbours::say_nothing);
+    };
+    const auto young =
+        fmt::format("setpoint younger than {:.1f} ms", static_cast<double>(oldest_us_) / 1e3);
+    kinds_.push_back({false, young, 0, agreement(), agreement()});
+    kinds_.push_back({true, "own setpoint of the step", 0, agreement(), agreement()});
+  }
+
+  void remove_integral(IntegralInUse& integral, const Sample& reference, Sample& logged) const {
+    if (subject_.module == Module::rate_unit) integral.remove_from(logged, reference);
+  }
+
+  bool agree(const Sample& got, const Sample& want) const {
+    for (std::size_t i = 0; i < channels().size(); ++i) {
+      if (!compared_[i] || !channels()[i].is_output()) continue;
+      const double off = distance(value_of(channels()[i], got), value_of(channels()[i], want));
+      if (!(off <= limits_.within)) return false;
+    }
+    return true;
+  }
+
+  std::string why_not(const StepKind& kind, const TopicAgreement& of_port,
+                      const TopicAgreement& of_reference) const {
+    if (of_port.paired < least_steps) {
+      return fmt::format("the log has all inputs of only {} steps, and at least {} are needed",
+                         of_port.paired, least_steps);
+    }
+    if (!has_reference_ || of_reference.agrees(limits_)) return "";
+    return fmt::format("only {:.1f}% of the reference's {} are within {:g} of the log{}",
+                       100 * of_reference.part_within(), of_reference.topic, limits_.within,
+                       kind.has_own_setpoint
+                           ? ", although all inputs of these steps are known: another law flew, or "
+                             "a modified one"
+                           : ": another law flew, or a modified one, or the logged setpoints were "
+                             "no longer in use");
+  }
+
+  void add(const Trace& want, const Trace& got, const Trace& as_flown) {
+    for (StepKind& kind : kinds_) {
+      std::vector<bool> is_of_kind;
+      for (std::size_t i = 0; i < want.samples.size(); ++i) {
+        const LoggedSetpoint& setpoint = steps_.ticks->setpoints()[i];
+        const bool is_young = age_of(want.samples[i], setpoint) < oldest_us_;
+        is_of_kind.push_back(setpoint.is_own == kind.has_own_setpoint &&
+                             (setpoint.is_own || is_young));
+      }
+      const Trace wanted = only(want, is_of_kind), reference = only(as_flown, is_of_kind);
+      kind.steps += wanted.samples.size();
+      kind.of_port.add(only(got, is_of_kind), wanted, reference);
+      kind.of_reference.add(reference, wanted, reference);
+    }
+  }
+
+  const LoggedUnit& steps_;
+  const ModuleUnderTest& subject_;
+  const LogLimits& limits_;
+  const LogParameters& parameters_;
+  std::size_t most_ticks_;
+  ChannelSet compared_;
+  std::uint64_t oldest_us_;     // setpoints that were given are younger
+  bool has_reference_ = false;  // false: attest does not have the law
+  std::vector<StepKind> kinds_;
+};
+
+}  // namespace
+
+Result<void> compare_single_steps(const LoggedUnit& steps, const ModuleUnderTest& subject,
+                                  PortHost& port, const LogLimits& limits,
+                                  const LogParameters& parameters, std::size_t most_ticks,
+                                  bool keeps_traces, LogResult& found) {
+  SingleStepJudge judging(steps, subject, limits, parameters, most_ticks);
+  const auto compared =
+      judging.find_steps().and_then([&] { return judging.compare(port, keeps_traces, found); });
+  if (!compared) return compared;
+  found.topics = judging.topics();
+  found.single_steps = judging.steps();
+  return {};
+}
+
+}  // namespace attest

@@ -1,0 +1,29 @@
+// Compares a port with the single steps of a log (ulog/single_steps.hpp).
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "harness/verify/evaluate_log.hpp"
+#include "harness/verify/replayed_log.hpp"
+
+namespace attest {
+
+// Gives the single steps to the port and to the reference, and compares both with the log. If the
+// reference does not agree with the log, another law flew, and nothing is judged. The steps with
+// the unit's own setpoint and the others are judged apart: TopicAgreement::condition tells which.
+//
+// The torque is compared without its integral, which comes from the log. The log has the integral
+// after the step, and the torque has the one before. So the integral that the step used is taken to
+// be between the logged one and this one less the reference's increment in the step, where the
+// reference's torque is nearest to the logged one. (An integral at its limit has no increment.)
+// Where the yaw torque is filtered (v1.16 and later), it is not compared.
+//
+// Sets topics, single_steps and ticks of `found`; the verdict if the port has a fault; the traces
+// if `keeps_traces`. REQUIRES: LoggedUnit::single_steps. Errors: those of LoggedTicks::next_part().
+Result<void> compare_single_steps(const LoggedUnit& steps, const ModuleUnderTest& subject,
+                                  PortHost& port, const LogLimits& limits,
+                                  const LogParameters& parameters, std::size_t most_ticks,
+                                  bool keeps_traces, LogResult& found);
+
+}  // namespace attest
