@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/cli/read_log.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/interrupt.hpp"
@@ -25,6 +26,8 @@ struct FaultOptions {
   bool diagnose = false;
   std::optional<int> fraction_bits;
   std::string level;  // of all cases; empty: numeric, and exact for cases of that level only
+  std::string log;    // of a flight, in place of the suite
+  std::vector<std::string> assumed;
   int jobs = 1;
 };
 
@@ -134,6 +137,13 @@ int diagnose_all(const std::vector<SelectedCase>& cases, const std::string& prof
   return part >= enough ? exit_ok : exit_failed;
 }
 
+JobResults<FaultCatch> catches_of(const Jobs<FaultCatch>& jobs, const FaultOptions& options) {
+  JobOptions<FaultCatch> workers;
+  workers.processes = options.jobs;
+  workers.stop = interrupted;
+  return run_jobs(jobs, workers);
+}
+
 // Prints which faults are caught. Returns exit_ok if a case of its own group catches each
 // detectable fault, and no case catches a fault that is not detectable in the profile. With
 // --level: returns exit_ok, because no single level has to catch all. With --diagnose: prints which
@@ -156,10 +166,7 @@ Result<int> measure(const FaultOptions& options, const SuiteFolder& suite,
     jobs.push_back(
         std::make_unique<FaultJob>(*fault, profile, *cases, goldens, options.fraction_bits, level));
   }
-  JobOptions<FaultCatch> workers;
-  workers.processes = options.jobs;
-  workers.stop = interrupted;
-  const JobResults<FaultCatch> outcome = run_jobs(jobs, workers);
+  const JobResults<FaultCatch> outcome = catches_of(jobs, options);
   if (interrupted()) return exit_interrupted;
   if (!outcome.errors.empty()) return tl::unexpected(outcome.errors.front());
   std::vector<FaultFinding> findings = find_naively(faults, profile);
@@ -204,9 +211,32 @@ std::vector<const Fault*> detectable(std::vector<const Fault*> faults,
   return faults;
 }
 
+// Prints which faults a log of a flight shows.
+int faults_of_log(const FaultOptions& options, std::vector<const Fault*> faults) {
+  if (options.profiles.size() > 1) return report_error({"--profile: name one, for the log"});
+  const auto log = read_log(options.log, options.assumed,
+                            options.profiles.empty() ? "" : options.profiles.front());
+  if (!log) return report_error(log.error());
+  print_notes(options.log, log->notes);
+  faults = detectable(of_law_of(log->profile, std::move(faults)), {log->profile});
+  note_interrupts();
+  Jobs<FaultCatch> jobs;
+  for (const Fault* fault : faults) jobs.push_back(std::make_unique<LogFaultJob>(*fault, *log));
+  const JobResults<FaultCatch> outcome = catches_of(jobs, options);
+  if (interrupted()) return exit_interrupted;
+  if (!outcome.errors.empty()) return report_error(outcome.errors.front());
+  std::vector<FaultFinding> findings;
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    findings.push_back({faults[i], log->profile, outcome.results[i]});
+  }
+  fmt::print("{}", render_faults_of_log(options.log, log->profile, findings));
+  return exit_ok;
+}
+
 int faults_command(const FaultOptions& options, const Globals& globals) {
   const auto faults = chosen(options);
   if (!faults) return report_error(faults.error());
+  if (!options.log.empty()) return faults_of_log(options, *faults);
   const auto profiles = chosen_profiles(options, *faults);
   if (!profiles) return report_error(profiles.error());
   if (options.list) {
@@ -265,9 +295,18 @@ void add_faults(const CommandLine& line) {
       .excludes(bits)
       .excludes(ids)
       .excludes(level);
+  command
+      .option("--log", options->log,
+              "Measure instead which faults the log of a flight shows: those with which a port "
+              "does not agree with it")
+      .type("FLIGHT.ulg")
+      .excludes(bits)
+      .excludes(level);
+  add_assumed(command, options->assumed);
   add_jobs(command, options->jobs, "Number of faults that run at the same time");
   command.examples({{"attest faults", "measure which faults the open-loop cases catch"},
                     {"attest faults --level events tpa-missing", "the same at one level"},
+                    {"attest faults --log FLIGHT.ulg", "which mistakes does this flight show?"},
                     {"attest faults --list --profile px4-v1.3.4",
                      "list the catalogue of one version of the law"}});
   command.runs(options, faults_command);

@@ -204,6 +204,10 @@ class Replay {
     const char* const what = !are_logs_                                ? "traces conform"
                              : entries_.size() > options_.files.size() ? "traces and units agree"
                                                                        : "traces and logs agree";
+    if (are_logs_ && passed_ > 0) {
+      fmt::print(out_, "Which mistakes would this show? attest faults --log {}\n",
+                 options_.files.size() == 1 ? options_.files.front() : "FLIGHT.ulg");
+    }
     const Verdict verdict = failed_ > 0   ? Verdict::fail
                             : passed_ > 0 ? Verdict::pass
                                           : Verdict::skip;

@@ -89,4 +89,21 @@ Result<FaultCatch> FaultJob::run(std::size_t) {
   return found;
 }
 
+Result<FaultCatch> LogFaultJob::run(std::size_t) {
+  FaultCatch found;
+  for (const LoggedUnit& unit : log_.units) {
+    InProcessHost host(*open_fault(fault_.id));
+    const auto judged = evaluate_log(unit, log_.profile, host, {});
+    if (!judged) return tl::unexpected(judged.error());
+    if (!fails_a_run(judged->result.verdict)) continue;
+    found.verdict = judged->result.verdict;
+    found.by = info_of(unit.module).title;
+    for (const TopicAgreement& topic : judged->topics) {
+      if (!found.tick && topic.first_unexplained) found.tick = topic.first_unexplained->tick;
+    }
+    return found;
+  }
+  return found;
+}
+
 }  // namespace attest

@@ -1,5 +1,5 @@
-// Runs one fault of the catalogue on the suite until a case catches it. This measures the quality
-// of the suite.
+// Runs one fault of the catalogue on the suite until a case catches it, or on the log of a flight.
+// This measures what the suite and the log can show.
 #pragma once
 
 #include <cstddef>
@@ -14,6 +14,7 @@
 #include "harness/compare/tolerance.hpp"
 #include "harness/golden/golden.hpp"
 #include "harness/process/job.hpp"
+#include "harness/verify/evaluate_log.hpp"
 #include "harness/verify/verdict.hpp"
 
 namespace attest {
@@ -61,6 +62,20 @@ class FaultJob final : public Job<FaultCatch> {
   const Goldens& goldens_;
   std::optional<int> fraction_bits_;  // if set, the fault is judged as a port in fixed point
   std::optional<Level> level_;
+};
+
+// Runs one fault on each unit of a log until a unit fails. `by` is then the title of the unit.
+class LogFaultJob final : public Job<FaultCatch> {
+ public:
+  // REQUIRES: `log` outlives this.
+  LogFaultJob(const faults::Fault& fault, const FlightLog& log) : fault_(fault), log_(log) {}
+
+  std::size_t size() const override { return 1; }
+  Result<FaultCatch> run(std::size_t task) override;
+
+ private:
+  const faults::Fault& fault_;
+  const FlightLog& log_;
 };
 
 }  // namespace attest

@@ -33,6 +33,22 @@ std::string naive(const FaultFinding& finding) {
   return finding.by_random_attitudes ? "attitudes" : "";
 }
 
+// In the order in which the groups first occur.
+std::vector<std::pair<std::string_view, std::vector<FaultFinding>>> by_group(
+    const std::vector<FaultFinding>& findings) {
+  std::vector<std::pair<std::string_view, std::vector<FaultFinding>>> groups;
+  for (const FaultFinding& finding : findings) {
+    const auto same = std::find_if(groups.begin(), groups.end(), [&](const auto& known) {
+      return known.first == finding.fault->group;
+    });
+    if (same != groups.end())
+      same->second.push_back(finding);
+    else
+      groups.push_back({finding.fault->group, {finding}});
+  }
+  return groups;
+}
+
 double percent(std::size_t part, std::size_t whole) {
   return whole == 0 ? 100 : 100 * static_cast<double>(part) / static_cast<double>(whole);
 }
@@ -69,17 +85,7 @@ FaultSummary summary_of(const std::vector<FaultFinding>& findings) {
 std::string render_fault_table(const std::vector<FaultFinding>& findings) {
   std::string out =
       "| group | faults | caught by it | by any | by a naive suite |\n|---|---|---|---|---|\n";
-  std::vector<std::pair<std::string_view, std::vector<FaultFinding>>> groups;
-  for (const FaultFinding& finding : findings) {
-    const auto same = std::find_if(groups.begin(), groups.end(), [&](const auto& known) {
-      return known.first == finding.fault->group;
-    });
-    if (same != groups.end())
-      same->second.push_back(finding);
-    else
-      groups.push_back({finding.fault->group, {finding}});
-  }
-  for (const auto& [group, of_group] : groups) {
+  for (const auto& [group, of_group] : by_group(findings)) {
     const FaultSummary of = summary_of(of_group);
     out += fmt::format("| {} | {} | {} | {} | {} |\n", group, of.detectable,
                        of.caught - of.not_by_own.size(), of.caught, of.by_naive);
@@ -103,6 +109,27 @@ std::string render_fault_table(const std::vector<FaultFinding>& findings) {
       summary.by_hover, percent(summary.by_hover, summary.detectable), summary.by_random_attitudes,
       percent(summary.by_random_attitudes, summary.detectable), summary.by_naive,
       percent(summary.by_naive, summary.detectable));
+  return out;
+}
+
+std::string render_faults_of_log(const std::string& log, const std::string& profile,
+                                 const std::vector<FaultFinding>& findings) {
+  std::string out = "| group | faults | shown |\n|---|---|---|\n";
+  for (const auto& [group, of_group] : by_group(findings)) {
+    const FaultSummary of = summary_of(of_group);
+    out += fmt::format("| {} | {} | {} |\n", group, of.detectable, of.caught);
+  }
+  out += "\n| fault | what it does | fails in the | at step |\n|---|---|---|---|\n";
+  for (const FaultFinding& finding : findings) {
+    out += fmt::format("| `{}` | {} | {} | {} |\n", finding.fault->id, finding.fault->what,
+                       finding.is_caught() ? finding.found.by : "", tick_of(finding));
+  }
+  const FaultSummary summary = summary_of(findings);
+  out += fmt::format(
+      "\n{}: of {} faults of {}, {} fail ({:.0f}%). A port can have the others and agree with this "
+      "log.\n",
+      log, summary.detectable, profile, summary.caught,
+      percent(summary.caught, summary.detectable));
   return out;
 }
 

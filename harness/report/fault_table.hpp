@@ -33,6 +33,11 @@ FaultSummary summary_of(const std::vector<FaultFinding>& findings);
 // the totals.
 std::string render_fault_table(const std::vector<FaultFinding>& findings);
 
+// Markdown: which faults the log of a flight shows. `findings`: of the faults that are detectable
+// in its profile.
+std::string render_faults_of_log(const std::string& log, const std::string& profile,
+                                 const std::vector<FaultFinding>& findings);
+
 // One line per fault: id, group, stage, profiles in which it is detectable, description.
 std::string render_fault_list(const std::vector<const faults::Fault*>& faults);
 

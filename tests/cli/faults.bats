@@ -125,3 +125,19 @@ jsonschema.Draft7Validator(schema).validate(report)
 CHECK
   done
 }
+
+@test "the log of a flight shows some faults" {
+  "$PYTHON" "$SOURCE/tests/cli/cascade_log.py" sparse.ulg --thin vehicle_angular_velocity=20 \
+    --thin vehicle_torque_setpoint=20 --thin vehicle_thrust_setpoint=20
+  run "$ATTEST" faults --log sparse.ulg cascade-d-reversed cascade-m-not-canonical \
+    cascade-i-missing tpa-missing
+  [ "$status" -eq 0 ]
+  has '| `cascade-d-reversed` | adds D instead of subtracting it | rate unit |'
+  has "without the canonical form of the quaternion | attitude unit |"
+  has "sparse.ulg: of 3 faults of px4-v1.16.0, 2 fail (67%)"
+  run "$ATTEST" faults --log sparse.ulg --level exact
+  [ "$status" -eq 2 ]
+  run "$ATTEST" faults --log nothing.ulg
+  [ "$status" -eq 2 ]
+  has "nothing.ulg"
+}

@@ -74,13 +74,26 @@ units_log() {
   has "FAIL 11 failed"
 }
 
-@test "a log that is too sparse for the rate unit becomes a case of the attitude unit alone" {
-  units_log sparse.ulg --profile px4-v1.14.4 --thin vehicle_angular_velocity=20 \
-    --thin vehicle_torque_setpoint=20 --thin vehicle_thrust_setpoint=20
+@test "a log that is too sparse for the rate unit becomes a case of its single steps" {
+  sparse=(--thin vehicle_angular_velocity=20 --thin vehicle_torque_setpoint=20
+    --thin vehicle_thrust_setpoint=20)
+  units_log sparse.ulg "${sparse[@]}"
   run "$ATTEST" vectors ours --from-log sparse.ulg
   [ "$status" -eq 0 ]
+  has "the rate unit has 198 single steps, of 4000 that the log has outputs of"
+  has "sparse_rate_unit.toml: 3.9801 s, 198 samples of vehicle_angular_velocity"
+  "$ATTEST" --suite ours bless --group from_log --yes --reason "a flight"
+  for port in builtin "lib:$(dirname "$STARTER")/../c_cascade/attest_starter_c_cascade.so"; do
+    run "$ATTEST" --suite ours run --group from_log --level exact --port "$port"
+    [ "$status" -eq 0 ]
+  done
+  run "$ATTEST" --suite ours run --group from_log --no-diagnose --port fault:cascade-d-reversed
+  [ "$status" -eq 1 ]
+  units_log sparser.ulg "${sparse[@]}" --without rate_ctrl_status
+  run "$ATTEST" vectors other --from-log sparser.ulg
+  [ "$status" -eq 0 ]
   has "no case of the rate unit: the log has a gyro sample every 20 ms"
-  [ "$(ls ours/cases/px4-v1.14.4/from_log)" = sparse_attitude_unit.toml ]
+  [ "$(ls other/cases/px4-v1.16.0/from_log)" = sparser_attitude_unit.toml ]
 }
 
 # answer VECTOR PORT: the outputs of the port, without its inputs, as the answer in ./inputs.
