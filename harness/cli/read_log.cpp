@@ -38,8 +38,8 @@ std::string profile_of(const FlightLog& log) {
   return "";
 }
 
-Result<void> choose_profile(const std::string& file, FlightLog& log) {
-  if (!log.profile.empty()) return {};
+void choose_profile(FlightLog& log) {
+  if (!log.profile.empty()) return;
   log.profile = profile_of(log);
   if (!log.profile.empty()) {
     log.notes.push_back(fmt::format("the profile is {}, because PX4 {} wrote the log (--profile)",
@@ -49,20 +49,20 @@ Result<void> choose_profile(const std::string& file, FlightLog& log) {
       log.notes.push_back(
           fmt::format("{} is the law of {}; the final release may differ", log.profile, as_of));
     }
-    return {};
+    return;
   }
   if (log.units.front().module == Module::mc_att_control) {
     log.profile = default_profile;
     log.notes.push_back(fmt::format("the profile is taken to be {} (--profile)", default_profile));
-    return {};
+    return;
   }
-  return fail_at(file, fmt::format("{}; name the law with --profile, one of {}",
-                                   log.release ? fmt::format("was written by PX4 {}, whose law "
-                                                             "attest does not have",
-                                                             log.release->to_string())
-                                               : "does not say which release of PX4 wrote it "
-                                                 "(ver_sw_release)",
-                                   fmt::join(profiles_for(log), ", ")));
+  log.no_profile = fmt::format("{}; name the law with --profile, one of {}",
+                               log.release ? fmt::format("was written by PX4 {}, whose law attest "
+                                                         "does not have",
+                                                         log.release->to_string())
+                                           : "does not say which release of PX4 wrote it "
+                                             "(ver_sw_release)",
+                               fmt::join(profiles_for(log), ", "));
 }
 
 // A profile that attest does not know is accepted, because a port may know it.
@@ -76,13 +76,21 @@ Result<void> check_profile(const std::string& file, const FlightLog& log) {
 
 }  // namespace
 
-Result<FlightLog> read_log(const std::string& file, const std::vector<std::string>& assumed,
-                           const std::string& profile, bool whole) {
+Result<FlightLog> read_any_log(const std::string& file, const std::vector<std::string>& assumed,
+                               const std::string& profile, bool whole) {
   auto log = read_as<&FileFormat::read_log>(file, assumed, whole);
   if (!log) return log;
   if (!profile.empty()) log->profile = profile;
-  if (auto chosen = choose_profile(file, *log); !chosen) return tl::unexpected(chosen.error());
+  choose_profile(*log);
+  if (!log->no_profile.empty()) return log;
   if (auto checked = check_profile(file, *log); !checked) return tl::unexpected(checked.error());
+  return log;
+}
+
+Result<FlightLog> read_log(const std::string& file, const std::vector<std::string>& assumed,
+                           const std::string& profile, bool whole) {
+  auto log = read_any_log(file, assumed, profile, whole);
+  if (log && !log->no_profile.empty()) return fail_at(file, log->no_profile);
   return log;
 }
 

@@ -17,6 +17,10 @@ namespace attest::cli {
 Result<FlightLog> read_log(const std::string& file, const std::vector<std::string>& assumed,
                            const std::string& profile, bool whole = true);
 
+// The same, but a log without a profile is no error: see FlightLog::no_profile.
+Result<FlightLog> read_any_log(const std::string& file, const std::vector<std::string>& assumed,
+                               const std::string& profile, bool whole);
+
 // Prints the notes on stderr.
 void print_notes(const std::string& file, const std::vector<std::string>& notes);
 

@@ -42,11 +42,12 @@ Result<void> check_parameters(const ReplayOptions& options, const FlightLog& log
 
 }  // namespace
 
+bool is_replayed(const FileFormat& format) { return format.open || format.read_log; }
+
 Result<RecordedParts> recorded_in(const std::string& file, const ReplayOptions& options) {
   auto recorded = RecordedParts::open(file, options.profile, options.mixer);
   if (!recorded) return recorded;
   if (auto set = set_parameters(options, *recorded); !set) return tl::unexpected(set.error());
-  print_notes(file, recorded->notes());
   return recorded;
 }
 
@@ -62,15 +63,13 @@ std::vector<ParameterChange> parameters_of(const ReplayOptions& options, const F
   return changes;
 }
 
-Result<FlightLog> log_in(const std::string& file, const ReplayOptions& options) {
+Result<FlightLog> log_in(const std::string& file, const ReplayOptions& options, bool whole) {
   if (!options.mixer.empty()) return fail_at(file, "is no mixer trace; leave --mixer out");
-  const bool has_page = !options.html.empty();  // which shows the whole log
-  auto log = read_log(file, options.assumed, options.profile, has_page);
-  if (!log) return log;
+  auto log = read_any_log(file, options.assumed, options.profile, whole);
+  if (!log || !log->no_profile.empty()) return log;
   if (auto checked = check_parameters(options, *log); !checked) {
     return tl::unexpected(checked.error());
   }
-  print_notes(file, log->notes);
   return log;
 }
 

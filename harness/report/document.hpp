@@ -63,6 +63,7 @@ struct Cell {
   std::string text;
   std::optional<Verdict> verdict;
   std::string small;
+  std::string link = {};  // DocumentTable::id of a table of the page
   std::optional<Nanoseconds> time;
 };
 
@@ -83,6 +84,7 @@ struct DocumentTable {
   std::vector<Cell> below = {};  // lines below the table, such as commands
   // 0: only the lines below the table are in the text.
   std::size_t rows_in_text = std::numeric_limits<std::size_t>::max();
+  std::string id = {};  // for links to it; may be empty
 };
 
 enum class LinePattern { solid, dashed, dotted };

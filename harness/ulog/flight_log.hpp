@@ -102,7 +102,8 @@ struct FlightLog {
   // One: the controller, or the unit of a log that attest wrote. Two: the attitude unit and the
   // rate unit. At least one has ticks.
   std::vector<LoggedUnit> units;
-  std::string profile;                   // in a log of attest, that of the case; else empty
+  std::string profile;     // in a log of attest, that of the case; else empty
+  std::string no_profile;  // for the reader of `profile`: why there is none that attest knows
   std::optional<ulog::Release> release;  // of the PX4 that wrote it, if the log says so
   bool is_of_attest = false;  // if true, the log has all that the unit received at each step
   // Remarks for the user, one line each: for example on damage, missing fields and assumptions.

@@ -311,9 +311,6 @@ WILD
   run "$ATTEST" replay "$trace" --port fault:quat-order-xyzw --html trace.html
   [ "$status" -eq 1 ]
   grep -q "first deviation" trace.html
-  run "$ATTEST" replay "$trace" "$log" --html both.html
-  [ "$status" -eq 2 ]
-  has "--html shows one trace or log"
   run "$ATTEST" replay "$log" --html "$log"
   [ "$status" -eq 2 ]
   has "would be overwritten"

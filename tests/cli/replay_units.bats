@@ -432,3 +432,35 @@ CHECK
   run "$ATTEST" compare download "$FLIGHT" --level exact
   [ "$status" -eq 0 ]
 }
+
+@test "many logs are judged in their order, and shown on one page, the worst first" {
+  flight strange.ulg --release 1.13.2
+  cp "$FLIGHT" flight.ulg
+  cp "$SPARSE" sparse.ulg
+  echo "no log" >text.ulg
+  logs=(sparse.ulg strange.ulg flight.ulg)
+  for jobs in 1 3; do
+    run "$ATTEST" replay "${logs[@]}" --param MC_ROLLRATE_K=1.3 --jobs "$jobs" --html "$jobs.html" \
+      --json "$jobs.json"
+    [ "$status" -eq 1 ]
+    has "skip        strange.ulg: attitude unit  no profile"
+    has "was written by PX4 v1.13.2, whose law attest does not have; name the law with --profile"
+    has "FAIL 2 of 6 traces and units agree, 2 not compared"
+    [ "$(grep -oE "^[a-z]+ +[a-z]+.ulg: [a-z]+" <<<"$output" | tr -s ' ')" = "pass sparse.ulg: attitude
+fail sparse.ulg: rate
+skip strange.ulg: attitude
+skip strange.ulg: rate
+pass flight.ulg: attitude
+fail flight.ulg: rate" ]
+  done
+  cmp 1.html 3.html
+  cmp 1.json 3.json
+  [ "$(grep -oE 'href="#log-[0-9]' 1.html | grep -oE "[0-9]" | tr -d '\n')" = 312213 ]
+  grep -q 'id="log-3"' 1.html
+  # A file that is no log is an error, after the others are judged.
+  run "$ATTEST" replay text.ulg sparse.ulg --json text.json
+  [ "$status" -eq 2 ]
+  judged pass pass
+  has "text.ulg:"
+  grep -q '"file": "sparse.ulg"' text.json
+}

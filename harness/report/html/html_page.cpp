@@ -137,6 +137,7 @@ Values cell_to_data(const Cell& cell, bool numeric) {
   set_text(out, "class", classes);
   set_text(out, "text", one_line(cell.text));
   set_text(out, "small", one_line(cell.small));
+  set_text(out, "link", cell.link);
   return out;
 }
 
@@ -160,6 +161,7 @@ Values table_to_data(const DocumentTable& table) {
   }
   Values out;
   set_text(out, "caption", one_line(table.caption));
+  set_text(out, "id", table.id);
   out.set("header", header);
   out.set("rows", rows);
   out.set("below", list_of(table.below, line_to_data));
