@@ -16,6 +16,7 @@
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/interrupt.hpp"
+#include "harness/core/json_text.hpp"
 #include "harness/report/fleet_document.hpp"
 #include "harness/report/progress.hpp"
 #include "harness/report/replay_document.hpp"
@@ -102,13 +103,14 @@ class Replay {
     if (file.error) errors_.push_back(*file.error);
     are_logs_ = are_logs_ || file.is_log;
     page_ = file.page;
-    for (std::size_t i = 0; i < file.entries.size(); ++i) {
-      const Verdict verdict = file.verdicts[i];
+    for (const Verdict verdict : file.verdicts) {
       passed_ += verdict == Verdict::pass ? 1 : 0;
       failed_ += fails_a_run(verdict) ? 1 : 0;
-      entries_.push_back(nlohmann::ordered_json::parse(file.entries[i]));
     }
-    logs_.push_back({options_.files[file.index], file.verdicts, file.entries, file.text});
+    FleetLog log{options_.files[file.index], file.verdicts, {}, file.text};
+    for (const std::string& entry : file.entries) log.entries.push_back(ordered_json_from(entry));
+    entries_.insert(entries_.end(), log.entries.begin(), log.entries.end());
+    logs_.push_back(std::move(log));
   }
 
   // A log of v1.14 to v1.18 counts once for each of its units.

@@ -103,6 +103,10 @@ nlohmann::json json_from(std::string_view text) {
   return nlohmann::json::parse(text, nullptr, false);
 }
 
+nlohmann::ordered_json ordered_json_from(std::string_view text) {
+  return nlohmann::ordered_json::parse(text, nullptr, false);
+}
+
 std::string text_of(const nlohmann::json& value) { return value.dump(-1, ' ', false, repair); }
 
 std::string document_of(const nlohmann::ordered_json& value) {

@@ -18,6 +18,7 @@ Result<nlohmann::json> parse_json(std::string_view text, const std::string& file
 // For text of attest's own processes. If it is not JSON, returns a discarded value
 // (is_discarded()), which is not an object.
 nlohmann::json json_from(std::string_view text);
+nlohmann::ordered_json ordered_json_from(std::string_view text);  // keeps the order of the keys
 
 // Bytes that are not UTF-8 are replaced by U+FFFD, because the texts of a port may have any bytes.
 std::string text_of(const nlohmann::json& value);              // one line, without a newline

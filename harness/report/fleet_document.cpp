@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace attest {
 namespace {
@@ -20,16 +19,16 @@ struct FleetRow {
 };
 
 // A number that JSON may have as null, because it is not finite.
-double number_in(const nlohmann::json& json, const char* key) {
+double number_in(const nlohmann::ordered_json& json, const char* key) {
   const auto found = json.find(key);
   return found != json.end() && found->is_number() ? found->get<double>() : 0;
 }
 
-FleetRow row_of(const nlohmann::json& entry, Verdict verdict, const std::string& link) {
+FleetRow row_of(const nlohmann::ordered_json& entry, Verdict verdict, const std::string& link) {
   FleetRow row;
   row.verdict = verdict;
   std::size_t compared = 0, within = 0;
-  for (const auto& topic : entry.value("topics", nlohmann::json::array())) {
+  for (const auto& topic : entry.value("topics", nlohmann::ordered_json::array())) {
     if (!topic.value("judged", false)) continue;
     row.largest = std::max(row.largest, number_in(topic, "largest"));
     compared += topic.at("paired").get<std::size_t>();
@@ -70,7 +69,7 @@ Document fleet_document(const std::string& port, const std::vector<FleetLog>& lo
   for (std::size_t i = 0; i < logs.size(); ++i) {
     const std::string id = fmt::format("log-{}", i + 1);
     for (std::size_t j = 0; j < logs[i].entries.size(); ++j) {
-      rows.push_back(row_of(nlohmann::json::parse(logs[i].entries[j]), logs[i].verdicts[j], id));
+      rows.push_back(row_of(logs[i].entries[j], logs[i].verdicts[j], id));
     }
     details.push_back(details_of(logs[i], id));
   }

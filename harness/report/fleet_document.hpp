@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "harness/report/document.hpp"
 #include "harness/verify/verdict.hpp"
 
@@ -12,9 +14,9 @@ namespace attest {
 
 struct FleetLog {
   std::string file;
-  std::vector<Verdict> verdicts;     // of each entry
-  std::vector<std::string> entries;  // of the JSON report (replay_document.hpp)
-  std::string text;                  // lines
+  std::vector<Verdict> verdicts;                // of each entry
+  std::vector<nlohmann::ordered_json> entries;  // of the JSON report (replay_document.hpp)
+  std::string text;                             // lines
 };
 
 // Failures come first, then what was not compared, then what passed by its largest deviation.
