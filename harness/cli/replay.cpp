@@ -213,7 +213,10 @@ void add_replay(const CommandLine& line) {
   const Command command = line.add("replay",
                                    "Feed the inputs of recorded traces or flight logs to a "
                                    "port and compare its outputs with the recorded ones");
-  command.option("files", options->files, "Traces (CSV) or flight logs (.ulg)")
+  command
+      .option("files", options->files,
+              "Traces (CSV) or flight logs (.ulg). A log shows more if the vehicle flew with bit 4 "
+              "of SDLOG_PROFILE (high rate); docs/traces.md has a table")
       .type("FILE")
       .required();
   add_port(command, options->host);

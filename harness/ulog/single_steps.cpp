@@ -70,43 +70,86 @@ class Ages {
   bool tells_ = false;  // whether the thrust of the last setpoint differs from the one before
 };
 
-// Reads the candidates of a unit, from the first tick on.
+// The candidates of a unit, in memory if they are few. Otherwise the ticks are read again each
+// time.
 class CandidateReader {
  public:
-  explicit CandidateReader(const LoggedUnit& log, LoggedTicks& ticks)
-      : ticks_(ticks), candidates_(log) {}
+  explicit CandidateReader(const LoggedUnit& log) : log_(log), ticks_(ticks_of(log)) {}
+
+  // The next candidate is then the first one. Call it first.
+  Result<void> rewind() {
+    next_in_memory_ = 0;
+    if (has_all_) return {};
+    in_memory_.clear();
+    fits_ = true;
+    candidates_.emplace(log_);
+    part_.samples.clear();
+    at_ = tick_ = 0;
+    has_ended_ = false;
+    return ticks_->rewind();
+  }
 
   // Empty after the last one.
   Result<std::optional<Candidate>> next() {
+    if (has_all_) return next_in_memory();
+    auto found = read_next();
+    if (!found) return found;
+    if (!*found) has_all_ = fits_;
+    if (*found && fits_) in_memory_.push_back({**found, tick_});
+    if (in_memory_.size() > most_in_memory) {
+      in_memory_.clear();
+      fits_ = false;
+    }
+    return found;
+  }
+
+  // The number of ticks up to the last candidate, included.
+  std::size_t ticks() const { return tick_; }
+  const Candidates& candidates() const { return *candidates_; }
+  const std::string& file() const { return ticks_->file(); }
+
+ private:
+  struct InMemory {
+    Candidate candidate;
+    std::size_t ticks;
+  };
+  // 8 MB. The default log of half an hour has fewer.
+  static constexpr std::size_t most_in_memory = 20'000;
+
+  std::optional<Candidate> next_in_memory() {
+    if (next_in_memory_ == in_memory_.size()) return std::nullopt;
+    const InMemory& next = in_memory_[next_in_memory_++];
+    tick_ = next.ticks;
+    return next.candidate;
+  }
+
+  Result<std::optional<Candidate>> read_next() {
     while (true) {
-      for (; at_ < part_.samples.size(); ++tick_) {
+      while (at_ < part_.samples.size()) {
         const std::size_t at = at_++;
-        auto found = candidates_.next(part_.samples[at], ticks_.setpoints()[at]);
-        if (found) {
-          ++tick_;
-          return found;
-        }
+        ++tick_;
+        auto found = candidates_->next(part_.samples[at], ticks_->setpoints()[at]);
+        if (found) return found;
       }
       if (has_ended_) return std::nullopt;
       if (auto read = read_part(); !read) return tl::unexpected(read.error());
     }
   }
 
-  // The number of ticks up to the last candidate, included.
-  std::size_t ticks() const { return tick_; }
-  const Candidates& candidates() const { return candidates_; }
-
- private:
   Result<void> read_part() {
     constexpr std::size_t most = 1024;
     at_ = 0;
-    auto read = ticks_.next_part(most, part_);
+    auto read = ticks_->next_part(most, part_);
     has_ended_ = part_.samples.size() < most;
     return read;
   }
 
-  LoggedTicks& ticks_;
-  Candidates candidates_;
+  const LoggedUnit& log_;
+  std::shared_ptr<LoggedTicks> ticks_;
+  std::optional<Candidates> candidates_;
+  std::vector<InMemory> in_memory_;
+  bool fits_ = true, has_all_ = false;  // in memory
+  std::size_t next_in_memory_ = 0;
   Trace part_;
   std::size_t at_ = 0;  // in part_, of the next tick
   std::size_t tick_ = 0;
@@ -125,13 +168,12 @@ class SingleStepTicks final : public LoggedTicks {
     return made;
   }
 
-  const std::string& file() const override { return ticks_->file(); }
+  const std::string& file() const override { return reader_.file(); }
   const ChannelSet& present() const override { return present_; }
 
   Result<void> rewind() override {
-    reader_.emplace(log_, *ticks_);
     tick_ = 0;
-    return ticks_->rewind();
+    return reader_.rewind();
   }
 
   Result<void> next_part(std::size_t most, Trace& part) override {
@@ -155,7 +197,7 @@ class SingleStepTicks final : public LoggedTicks {
   const std::vector<ParameterChange>& parameters() const { return parameters_; }
 
  private:
-  explicit SingleStepTicks(const LoggedUnit& log) : log_(log), ticks_(ticks_of(log)) {
+  explicit SingleStepTicks(const LoggedUnit& log) : log_(log), reader_(log) {
     present_ = channels_of(log.module, "in/").set(timestamp_channel);
     const auto laws =
         log.module == Module::rate_unit
@@ -170,7 +212,7 @@ class SingleStepTicks final : public LoggedTicks {
   // The next single step; empty after the last one.
   Result<std::optional<Candidate>> next() {
     while (true) {
-      auto step = reader_->next();
+      auto step = reader_.next();
       if (!step || !*step) return step;
       if (!is_in_use(**step)) continue;
       ++tick_;
@@ -188,7 +230,7 @@ class SingleStepTicks final : public LoggedTicks {
     Ages ages;
     std::size_t candidates = 0, other_own = 0;
     while (true) {
-      const auto step = reader_->next();
+      const auto step = reader_.next();
       if (!step) return tl::unexpected(step.error());
       if (!*step) break;
       ++candidates;
@@ -202,7 +244,7 @@ class SingleStepTicks final : public LoggedTicks {
     steps_.oldest_us = ages.limit_us();
     const auto [fit, other] = ages.counts_up_to(steps_.oldest_us);
     steps_.with_given_setpoint = fit;
-    describe(reader_->candidates(), candidates - steps_.with_own_setpoint - fit, other + other_own);
+    describe(reader_.candidates(), candidates - steps_.with_own_setpoint - fit, other + other_own);
     return {};
   }
 
@@ -244,15 +286,14 @@ class SingleStepTicks final : public LoggedTicks {
       const auto step = next();
       if (!step) return tl::unexpected(step.error());
       if (!*step) break;
-      place_until(reader_->ticks(), tick_ - 1);
+      place_until(reader_.ticks(), tick_ - 1);
     }
     parameters_.resize(next_change);  // the others come after the last step
     return {};
   }
 
   const LoggedUnit& log_;
-  std::shared_ptr<LoggedTicks> ticks_;
-  std::optional<CandidateReader> reader_;
+  CandidateReader reader_;
   ChannelSet present_;
   SingleSteps steps_;
   std::size_t tick_ = 0;  // of the next single step

@@ -5,8 +5,8 @@
 //
 // - Steps of the attitude unit whose rates setpoint is in the log. If the unit makes its attitude
 //   setpoint from the sticks, the log must have this setpoint, too: it becomes an input.
-// - Steps of the rate unit whose torque, thrust and integral are in the log. The vehicle becomes
-//   disarmed in the inputs, so that the integral of the unit is 0 in each step. To compare the
+// - Steps of the rate unit whose torque, thrust and integral are in the log. The vehicle is not
+//   armed in the inputs, so that the integral of the unit is 0 in each step. To compare the
 //   torques, subtract the integral from the logged one.
 //
 // The log does not have every setpoint, so the last one before a step may not be the one in use.
