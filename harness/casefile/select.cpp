@@ -138,11 +138,12 @@ std::vector<RunConfiguration> selected_configurations(const Case& the_case,
 // The rates, profiles, vehicles, plants and names in the files that were read.
 struct Known {
   std::set<LoopRate> rates;
-  std::set<std::string> profiles, vehicles, plants;
+  std::set<std::string> profiles, groups, vehicles, plants;
   std::vector<std::string> names;
 
   void add(const Case& the_case) {
     names.push_back(the_case.name);
+    groups.insert(the_case.group);
     profiles.insert(the_case.profiles.begin(), the_case.profiles.end());
     for (const RunConfiguration& configuration : the_case.configurations()) {
       rates.insert(configuration.rate);
@@ -241,8 +242,10 @@ std::string scope_of(const Selection& selection) {
 
 // Each pattern must match a vector. Otherwise a misspelt filter would silently leave out vectors,
 // and a misspelt exclusion would run vectors that should be left out.
+// `groups`: of the suite.
 Result<void> check_patterns(const Selection& selection, const std::set<std::string>& matching,
-                            const std::vector<std::string>& names) {
+                            const std::vector<std::string>& names,
+                            const std::set<std::string>& groups) {
   std::vector<std::string> idle;
   for (const auto& patterns : {selection.filters, selection.excludes}) {
     for (const std::string& pattern : patterns) {
@@ -250,6 +253,10 @@ Result<void> check_patterns(const Selection& selection, const std::set<std::stri
     }
   }
   if (idle.empty()) return {};
+  if (groups.contains(idle.front())) {
+    return fail(fmt::format("no case has the name `{0}`; it is a group: `--group {0}` or `{0}/*`",
+                            idle.front()));
+  }
   return fail(fmt::format("no case{} matches `{}`{}; `attest list` shows them all",
                           scope_of(selection), fmt::join(idle, "` or `"),
                           suggestion(idle.front(), names)));
@@ -269,7 +276,7 @@ Result<std::vector<SelectedCase>> select_from(const std::vector<fs::path>& files
   if (auto checked = check_known(selection, known); !checked) {
     return tl::unexpected(checked.error());
   }
-  if (auto checked = check_patterns(selection, matching, known.names); !checked) {
+  if (auto checked = check_patterns(selection, matching, known.names, known.groups); !checked) {
     return tl::unexpected(checked.error());
   }
   if (selected.empty()) {

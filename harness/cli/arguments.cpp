@@ -1,10 +1,14 @@
 #include "harness/cli/arguments.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -17,6 +21,7 @@
 #include "harness/cli/suite_folder.hpp"
 #include "harness/cli/wrong_arguments.hpp"
 #include "harness/core/version.hpp"
+#include "harness/report/terminal.hpp"
 
 namespace attest::cli {
 namespace {
@@ -30,7 +35,7 @@ constexpr const char* description =
 constexpr const char* footer =
     "\nFirst steps (`attest help COMMAND` has more):\n"
     "  attest run                                     run all cases on the built-in reference\n"
-    "  attest run --port lib:./libmine.so             run all cases on your port\n"
+    "  attest run ./libmine.so                        run all cases on your port\n"
     "  attest run --port lib:./libmine.so --level exact --filter 'attitude/*@250hz'\n"
     "  attest replay TRACE.csv --port lib:./libmine.so\n"
     "  attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv\n"
@@ -40,14 +45,48 @@ constexpr const char* footer =
     "Exit codes: 0 no failure, 1 a failure, 2 wrong usage or environment, or no result,\n"
     "130 interrupted by Ctrl-C.\n";
 
-// Shows the negation of a flag as `--no-stack`; CLI11 shows `--no-stack{false}`.
-class PlainFlagNames final : public CLI::Formatter {
+// Breaks the lines of a text at this width. A word that is longer has a line of its own.
+std::string wrapped(std::string_view text, std::size_t width) {
+  std::string out, line;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(word.size() + 1, text.size()));
+    if (!line.empty() && line.size() + 1 + word.size() > width) {
+      out += line + "\n";
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + std::string(word);
+  }
+  return out + line;
+}
+
+// Breaks the lines on a terminal at its width. Shows the negation of a flag as `--no-stack`; CLI11
+// shows `--no-stack{false}`.
+class HelpFormat final : public CLI::Formatter {
  public:
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return in_column(CLI::Formatter::make_option_desc(option));
+  }
+
+  std::string make_subcommand(const CLI::App* command) const override {
+    std::stringstream out;
+    CLI::detail::format_help(out, command->get_name(), in_column(command->get_description()),
+                             get_column_width());
+    return out.str();
+  }
+
   std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
     constexpr std::string_view value = "{false}";
     std::string name = CLI::Formatter::make_option_name(option, is_positional);
     const auto at = name.find(value);
     return at == std::string::npos ? name : name.erase(at, value.size());
+  }
+
+ private:
+  // A description, beside the names.
+  std::string in_column(const std::string& text) const {
+    const auto width = static_cast<std::size_t>(terminal_style(stdout).width);
+    return width > 2 * get_column_width() ? wrapped(text, width - get_column_width()) : text;
   }
 };
 
@@ -104,6 +143,10 @@ constexpr std::array every_command{
 // Returns the exit code if the command line is wrong, or only asks for help or the version. Empty:
 // the command must run.
 std::optional<int> parse(CLI::App& app, int argc, char** argv) {
+  if (argc == 1) {
+    fmt::print(stderr, "{}{}\nattest --help lists the commands.\n", description, footer);
+    return exit_usage;
+  }
   const std::string word = argc > 1 ? argv[1] : "";
   if (!word.empty() && !word.starts_with('-')) {
     const std::string wrong = unknown_command(app, word);
@@ -143,7 +186,7 @@ void hide_suites(const Globals& globals) {
 
 int run_command_line(int argc, char** argv) {
   CLI::App app(description, "attest");
-  app.formatter(std::make_shared<PlainFlagNames>());  // first: commands copy it
+  app.formatter(std::make_shared<HelpFormat>());  // first: commands copy it
   app.set_version_flag("--version", fmt::format("attest {}", version));
   app.require_subcommand(1);
   app.fallthrough();

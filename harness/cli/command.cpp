@@ -31,6 +31,15 @@ Option Option::check(const std::function<std::string(const std::string&)>& wrong
   return Option(*option_->check(wrong));
 }
 
+Option Option::rewritten(const std::function<std::string(const std::string&)>& rewrite) const {
+  return Option(*option_->transform(CLI::Validator(
+      [rewrite](std::string& given) {
+        given = rewrite(given);
+        return std::string();
+      },
+      "")));
+}
+
 Option Option::needs(Option other) const { return Option(*option_->needs(other.option_)); }
 Option Option::excludes(Option other) const { return Option(*option_->excludes(other.option_)); }
 bool Option::is_given() const { return option_->count() > 0; }

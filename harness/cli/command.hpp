@@ -46,6 +46,9 @@ class Option {
   // `wrong` returns what is wrong with a value; empty: nothing.
   Option check(const std::function<std::string(const std::string&)>& wrong) const;
 
+  // What was given becomes this, before it is checked.
+  Option rewritten(const std::function<std::string(const std::string&)>& rewrite) const;
+
   Option needs(Option other) const;
   Option excludes(Option other) const;
 

@@ -273,7 +273,8 @@ void add_faults(const CommandLine& line) {
               "Only these versions of the law, separated by commas; default: all")
       .type("PROFILE")
       .separated_by_commas()
-      .one_each_time();
+      .one_each_time()
+      .rewritten(full_profile_name);
   command.flag("--list", options->list, "List the faults, and run nothing");
   const Option bits =
       command

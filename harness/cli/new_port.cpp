@@ -104,7 +104,17 @@ void lay_out(const Parts& parts, const Language& language, const fs::path& folde
   fs::copy_file(parts.ci / "gitlab-ci.yml", folder / ".gitlab-ci.yml");
 }
 
+// For who does not name one.
+std::string languages_text() {
+  std::string text = "name a new folder and the port to start from: attest new-port mine --lang c";
+  for (const Language& language : languages) {
+    text += fmt::format("\n  {:<15} {}", language.name, language.title);
+  }
+  return text;
+}
+
 Result<Language> make_port(const NewPortOptions& options, const std::string& suite) {
+  if (options.folder.empty() || options.language.empty()) return fail(languages_text());
   if (auto apart = check_output_folder(options.folder, suite); !apart) {
     return tl::unexpected(apart.error());
   }
@@ -143,14 +153,13 @@ void add_new_port(const CommandLine& line) {
   auto options = std::make_shared<NewPortOptions>();
   const Command command =
       line.add("new-port", "Make a folder with a complete port to start from, and with CI jobs");
-  command.option("folder", options->folder, "The new folder").type("DIR").required();
+  command.option("folder", options->folder, "The new folder").type("DIR");
   command
       .option("--lang", options->language,
               "Port to start from: `c`, `cpp`, `python`, `rust` or `simulink` for v1.5.5 and "
               "v1.3.4; `c_cascade` or `python_cascade` for v1.14 to v1.18; `c_law` or "
               "`python_law` for the two laws of v1.14 to v1.17 alone")
-      .type("LANG")
-      .required();
+      .type("LANG");
   command.examples(
       {{"attest new-port mine --lang c", "a port in C; mine/check builds and runs it"},
        {"attest new-port mine --lang c_cascade", "a port in C of v1.14 to v1.18"},

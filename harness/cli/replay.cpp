@@ -190,7 +190,8 @@ void add_law_options(Command command, ReplayOptions& options) {
       .option("--profile", options.profile,
               "Version of the law; default for a trace: that of its provenance.toml, else "
               "the newest with its unit; default for a log: the release of PX4 that wrote it")
-      .type("PROFILE");
+      .type("PROFILE")
+      .rewritten(full_profile_name);
   command
       .option("--param", options.parameters, "Set a parameter of the port from the first step on")
       .type("NAME=VALUE")

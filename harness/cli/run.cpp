@@ -27,29 +27,42 @@ Result<void> check_paths(const RunOptions& options, const std::string& suite) {
   return prepare_trace_folder(options.save_traces, suite);
 }
 
-// Runs all vectors. False: interrupted, and the results are not complete.
-bool run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
+// Without this, a port that hangs costs the time limit for each of thousands of vectors.
+constexpr int most_timeouts_in_a_row = 5;
+
+// Runs the vectors, until an interrupt or until the port seems to hang for ever.
+void run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
   Progress progress(plan.run.selected, Progress::on_stderr(globals.quiet));
   JobOptions<VectorResult> jobs;
   jobs.processes = options.jobs;
   jobs.in_process = options.host.in_process;
   jobs.fail_fast = options.fail_fast;
-  jobs.on_result = [&](const VectorResult& result) { progress.add(result); };
+  int timeouts = 0;  // in a row
+  jobs.on_result = [&](const VectorResult& result) {
+    progress.add(result);
+    if (timeouts < most_timeouts_in_a_row) {
+      timeouts = result.verdict == Verdict::timeout ? timeouts + 1 : 0;
+    }
+  };
+  const auto hangs = [&] { return timeouts == most_timeouts_in_a_row; };
   jobs.fails = [&](const VectorResult& result) {
     return fails_a_run(result.verdict) && !(plan.expected && plan.expected->expects(result));
   };
-  jobs.stop = interrupted;
+  jobs.stop = [&] { return interrupted() || hangs(); };
   JobResults<VectorResult> outcome = run_jobs(plan.jobs, jobs);
   progress.finish();
+  if (hangs()) {
+    fmt::print(stderr, "attest: note: stopped, because {} vectors in a row ended by a timeout\n",
+               most_timeouts_in_a_row);
+  }
   RunResult& run = plan.run;
   run.results = std::move(outcome.results);
   settle_silent_topics(run.results, [&](const VectorResult& result) {
     return plan.expected && plan.expected->expects(result);
   });
   run.errors = std::move(outcome.errors);
-  run.stopped_early = outcome.stopped_early;
+  run.stopped_early = outcome.stopped_early || hangs() || interrupted();
   if (auto same = check_port(plan.host); !same) run.errors.push_back(same.error());
-  return !interrupted();
 }
 
 int run_command(const RunOptions& options, const Globals& globals) {
@@ -69,12 +82,18 @@ int run_command(const RunOptions& options, const Globals& globals) {
   auto plan = make_plan(traces->planned(options), *suite);
   if (!plan) return report_error(plan.error());
   plan->run.suite_folder = globals.suite;
-  if (!run_all(options, globals, *plan)) {
-    fmt::print(stderr, "attest: interrupted; no report was written\n");
+  run_all(options, globals, *plan);
+  RunResult& run = plan->run;
+  if (interrupted()) {
+    if (run.results.empty()) return report_error({"interrupted; no vector was run"});
+    fmt::print(stderr, "attest: interrupted; the reports have the vectors that were run\n");
+    forget_interrupt();
+    ReportOptions without_diagnosis = options.report;
+    without_diagnosis.diagnose = false;
+    conclude(run, {plan->cases, plan->host, options.jobs, {}}, without_diagnosis,
+             *std::move(reports), begin, globals);
     return exit_interrupted;
   }
-
-  RunResult& run = plan->run;
   const bool is_complete = options.timing.empty() && options.select.selects_all() &&
                            !run.stopped_early && run.errors.empty();
   if (plan->expected) plan->expected->apply(is_complete, run);
@@ -141,6 +160,7 @@ void add_run(const CommandLine& line) {
   const Command command =
       line.add("run", "Run the cases on a port, and compare its outputs with the expected ones");
   add_port(command, options->host, Ports::any);
+  add_port_argument(command, options->host);
   add_selection(command, options->select);
   command.option("--shard", options->select.shard, "Run only part I of N of the cases")
       .type("I/N")

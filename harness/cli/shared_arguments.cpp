@@ -9,6 +9,7 @@
 
 #include "harness/golden/recorded.hpp"
 #include "harness/port/port.hpp"
+#include "harness/port/profiles.hpp"
 #include "harness/report/report.hpp"
 #include "harness/ulog/flight_log.hpp"
 
@@ -26,15 +27,25 @@ std::string assumed_by_default_of_units() {
 
 }  // namespace
 
+void add_port_argument(Command command, HostOptions& host) {
+  command.option("port", host.port, "The same as --port")
+      .type("PORT")
+      .rewritten(port_of_file)
+      .excludes(command.find("--port"));
+}
+
 void add_port(Command command, HostOptions& host, Ports accepted) {
   host.barrier = command.globals().barrier;
   const std::string kinds = names_of_port_kinds(accepted == Ports::callable);
   const Option option =
       command
           .option("--port", host.port,
-                  fmt::format("Port to run: {}; `builtin` is the reference of attest", kinds))
+                  fmt::format("Port to run: {}, or the file of a library or program; `builtin` "
+                              "is the reference of attest",
+                              kinds))
           .type("PORT")
-          .shows_default();
+          .shows_default()
+          .rewritten(port_of_file);
   if (accepted == Ports::any) return;
   option.check([](const std::string& given) -> std::string {
     if (kind_of(given).is_callable()) return "";
@@ -117,7 +128,8 @@ void add_selection(Command command, SelectionOptions& options, Selects selects) 
       .separated_by_commas();
   add("--profile", options.profiles, "Only these versions of the law, separated by commas",
       "PROFILE")
-      .separated_by_commas();
+      .separated_by_commas()
+      .rewritten(full_profile_name);
   add_rates(command, options.rates,
             with_flights ? "Only these loop rates [Hz], separated by commas; flights of v1.14 to "
                            "v1.16 have pairs such as 250:1000"
@@ -129,6 +141,11 @@ void add_selection(Command command, SelectionOptions& options, Selects selects) 
       .separated_by_commas();
   add("--plant", options.plants, "Only flights on this plant: `mujoco` or `ode`", "PLANT")
       .separated_by_commas();
+}
+
+std::string full_profile_name(const std::string& given) {
+  const std::string full = "px4-" + given;
+  return find_profile(full) != nullptr ? full : given;
 }
 
 void add_assumed(Command command, std::vector<std::string>& assumed) {

@@ -32,6 +32,11 @@ void add_plant(Command command, std::string& vehicle, std::string& plant,
 // `callable` refuses a recorded port, which has outputs but no functions; only `run` can judge it.
 enum class Ports { callable, any };
 void add_port(Command command, HostOptions& host, Ports accepted = Ports::callable);
+// The port as an argument without a name. REQUIRES: add_port() was called.
+void add_port_argument(Command command, HostOptions& host);
+// The name of a profile: "v1.5.5" becomes "px4-v1.5.5", if there is such a profile.
+std::string full_profile_name(const std::string& given);
+
 // --assume: assumptions that replace the topics that a flight log lacks.
 void add_assumed(Command command, std::vector<std::string>& assumed);
 void add_timeout(Command command, double& timeout_s);

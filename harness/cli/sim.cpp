@@ -28,10 +28,13 @@ struct SimOptions {
   std::string vehicle, plant;  // empty: the lead vehicle and the first plant of the case
   std::string timing;
   HostOptions host;
-  std::string out, html;  // files; at least one
+  std::string out, html;  // files; may be empty
 };
 
 constexpr std::string_view all_plants = "all";
+// Without --rate; those of most flights of PX4.
+constexpr const char* default_rate = "250";
+constexpr const char* default_rates_of_units = "250:1000";
 
 // The file of the attitude unit's trace, next to the rate unit's: "flown.attitude_unit.csv". Empty:
 // that trace is not written, because there is no --out, or --out is stdout, which takes one trace.
@@ -64,18 +67,18 @@ Result<Sim> prepare_timed(const SimOptions& options, const SuiteFolder& suite) {
 }
 
 Result<Sim> prepare_case(const SimOptions& options, const SuiteFolder& suite) {
-  if (options.case_name.empty() || options.rate.empty()) {
-    return fail("needs a case and --rate, or --timing");
-  }
+  if (options.case_name.empty()) return fail("needs a case, or --timing");
   const bool on_all = options.plant == all_plants;
   if (on_all && !options.out.empty()) {
     return fail("--out writes one flight; name its plant instead of `all`");
   }
-  const auto rate = LoopRate::parse(options.rate);
+  auto rate = LoopRate::parse(options.rate.empty() ? default_rate : options.rate);
   if (!rate) return tl::unexpected(rate.error());
   auto chosen =
       choose_flight(options.case_name, *rate, options.vehicle, on_all ? "" : options.plant, suite);
   if (!chosen) return tl::unexpected(chosen.error());
+  const bool has_two_units = chosen->the_case.attitude_loop.has_value();
+  if (options.rate.empty() && has_two_units) rate = LoopRate::parse(default_rates_of_units);
   if (auto few = check_ticks(chosen->the_case, *rate); !few) return tl::unexpected(few.error());
   std::vector<RunConfiguration> configurations;
   for (const PlantKind plant : plant_kinds) {
@@ -92,7 +95,6 @@ Result<Sim> prepare_case(const SimOptions& options, const SuiteFolder& suite) {
 Result<Sim> prepare(const SimOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return tl::unexpected(suite.error());
-  if (options.out.empty() && options.html.empty()) return fail("needs --out or --html");
   const auto checked =
       check_outputs({options.out, attitude_file(options.out), options.html},
                     {options.host.port, {options.timing, options.case_name}}, globals.suite);
@@ -196,13 +198,14 @@ void add_sim(const CommandLine& line) {
   auto options = std::make_shared<SimOptions>();
   const Command command =
       line.add("sim",
-               "Fly one case in simulation with a port, and write a trace or a page of the "
-               "flight");
+               "Fly one case in simulation with a port, print the metrics, and write a trace or "
+               "a page of the flight");
   command.option("case", options->case_name, "The flight: the name or id of a case, or a case file")
       .type("CASE");
   command
       .option("--rate", options->rate,
-              "Loop rate [Hz]; for v1.14 to v1.18 the rates of both units, such as 250:1000")
+              "Loop rate [Hz]; for v1.14 to v1.18 the rates of both units, such as 250:1000; "
+              "default: 250, and 250:1000")
       .type("HZ");
   command
       .option("--timing", options->timing,
@@ -224,8 +227,9 @@ void add_sim(const CommandLine& line) {
   add_page(command, options->html,
            "a page with plots of the flight and an animation of the attitude");
   add_timeout(command, options->host.timeout_s);
-  command.examples({{"attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv",
-                     "hover with the Iris on MuJoCo, and write a trace"},
+  command.examples({{"attest sim hover", "hover with the Iris on MuJoCo, and print the metrics"},
+                    {"attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv",
+                     "the same with a port, and write a trace"},
                     {"attest sim gust --rate 500 --vehicle hexa --plant ode --out flown.csv",
                      "another vehicle and another plant"},
                     {"attest sim flip_150_level --rate 250 --html flight.html",

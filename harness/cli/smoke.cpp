@@ -23,6 +23,7 @@ void add_smoke(const CommandLine& line) {
                "Check step by step whether a port follows attest_unit.h, or PROTOCOL.md if it "
                "is a program; its law is not judged");
   add_port(command, options->host);
+  add_port_argument(command, options->host);
   add_timeout(command, options->host.timeout_s);
   command.examples(
       {{"attest smoke --port \"proc:python3 my_port.py\"", "the exchange with a program"},

@@ -319,6 +319,7 @@ void add_stress(const CommandLine& line) {
                "Fly one case in real time with a port, and measure latency, execution time, "
                "response time and deadline misses");
   add_port(command, options->host);
+  add_port_argument(command, options->host);
   add_rates(command, options->rates,
             "Loop rates [Hz], separated by commas; for v1.14 to v1.18 pairs such as 250:1000")
       .shows_default("250,500,1000,2000,4000,8000");

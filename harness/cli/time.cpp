@@ -172,6 +172,7 @@ void add_time(const CommandLine& line) {
                "Measure the execution time and the stack use of a port's steps in the "
                "open-loop vectors");
   add_port(command, options->host);
+  add_port_argument(command, options->host);
   add_selection(command, options->select, Selects::open_loop);
   command
       .option("--repeat", options->measure.repeats,

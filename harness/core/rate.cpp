@@ -55,7 +55,11 @@ std::optional<Fraction> parse_fraction(std::string_view text) {
 }  // namespace
 
 Result<Rate> Rate::parse(std::string_view text) {
-  const auto fraction = parse_fraction(text);
+  std::string_view number = text;
+  for (const std::string_view unit : {"hz", "Hz", "HZ"}) {
+    if (number.size() > unit.size() && number.ends_with(unit)) number.remove_suffix(unit.size());
+  }
+  const auto fraction = parse_fraction(number);
   if (!fraction || fraction->numerator == 0 || fraction->denominator == 0) {
     return fail(
         fmt::format("`{}` is not a rate; write a positive number of hertz such as 250, "

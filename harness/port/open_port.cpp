@@ -1,10 +1,14 @@
 // The table of the kinds of port, and what is asked of a kind by the specification of a port.
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 
+#include <elf.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include "harness/port/builtin.hpp"
 #include "harness/port/fault_port.hpp"
@@ -29,13 +33,31 @@ std::vector<std::string> files_below(const std::string& folder) {
   return files;
 }
 
+// An ELF file without an interpreter. A program, also one that may be loaded at any address, names
+// the dynamic linker as its interpreter.
+bool is_shared_library(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  Elf64_Ehdr head{};
+  file.read(reinterpret_cast<char*>(&head), sizeof head);
+  if (!file || std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0 || head.e_type != ET_DYN) {
+    return false;
+  }
+  for (std::uint16_t i = 0; i < head.e_phnum; ++i) {
+    Elf64_Phdr part{};
+    file.seekg(static_cast<std::streamoff>(head.e_phoff + i * sizeof part));
+    file.read(reinterpret_cast<char*>(&part), sizeof part);
+    if (file && part.p_type == PT_INTERP) return false;
+  }
+  return true;
+}
+
 Result<std::unique_ptr<Port>> refuse_unknown(const std::string& specification) {
   std::error_code unreadable;
   if (std::filesystem::is_regular_file(specification, unreadable)) {
     return fail(
-        fmt::format("unknown port `{0}`: a file; a shared library is `lib:{0}`, a program "
-                    "`proc:{0}`",
-                    specification));
+        fmt::format("{}: neither a shared library nor an executable file; a port is one of "
+                    "{}",
+                    specification, names_of_port_kinds(true)));
   }
   return fail(
       fmt::format("unknown port `{}`; use one of {}", specification, names_of_port_kinds(true)));
@@ -67,6 +89,18 @@ const PortKind& kind_of(const std::string& specification) {
 
 std::string argument_of(const std::string& specification) {
   return specification.substr(kind_of(specification).prefix.size());
+}
+
+std::string port_of_file(const std::string& given) {
+  const std::filesystem::path file = given;
+  std::error_code unreadable;
+  if (!kind_of(given).prefix.empty() || !std::filesystem::is_regular_file(file, unreadable)) {
+    return given;
+  }
+  // dlopen() and a shell look for a name without a folder elsewhere.
+  const std::string path = file.has_parent_path() ? given : "./" + given;
+  if (is_shared_library(path)) return "lib:" + path;
+  return ::access(path.c_str(), X_OK) == 0 ? "proc:" + path : given;
 }
 
 std::vector<std::string> files_of(const std::string& specification) {

@@ -160,6 +160,10 @@ const PortKind& kind_of(const std::string& specification);
 std::string argument_of(const std::string& specification);
 std::vector<std::string> files_of(const std::string& specification);
 
+// The port that the file `given` is: "./mine.so" becomes "lib:./mine.so", and an executable file
+// "proc:FILE". Returns anything else as it is.
+std::string port_of_file(const std::string& given);
+
 // For help and messages: "`builtin`, `lib:PATH`". `only_callable`: those that open_port() opens.
 std::string names_of_port_kinds(bool only_callable);
 

@@ -129,8 +129,9 @@ PORT
   cmp one.html three.html
   grep -q "1000 ticks$" printed
   run "$ATTEST" sim flip_150_level --rate 250
-  [ "$status" -eq 2 ]
-  has "needs --out or --html"
+  [ "$status" -eq 0 ]
+  has "1000 ticks"
+  has "metric"
   run "$ATTEST" sim flip_150_level --rate 250 --html same --out same
   [ "$status" -eq 2 ]
   has "is asked for twice"

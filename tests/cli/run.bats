@@ -13,7 +13,8 @@ quick=(--group battery --group rates --rate 100,250,8000)
 @test "without a command: help that teaches, exit 2" {
   run "$ATTEST"
   [ "$status" -eq 2 ]
-  has "attest: error: name a command; attest --help lists them"
+  has "First steps"
+  has "attest --help lists the commands."
 }
 
 @test "help names the first steps" {
@@ -31,7 +32,7 @@ quick=(--group battery --group rates --rate 100,250,8000)
   has 'attest: error: unknown option `--nonsense`'
   run "$ATTEST" new-port mine
   [ "$status" -eq 2 ]
-  has "attest: error: --lang is required; attest new-port --help describes the options"
+  has "attest: error: name a new folder and the port to start from"
 }
 
 @test "filters, groups and rates select" {
@@ -157,7 +158,31 @@ quick=(--group battery --group rates --rate 100,250,8000)
 }
 
 # The port hangs in a step, while it is loaded, or in create().
-@test "Ctrl-C ends a run at once and leaves no report behind" {
+@test "a run that is interrupted reports the vectors that were run" {
+  "$ATTEST" run --json r.json >out 2>err &
+  pid=$!
+  sleep 5
+  kill -INT "$pid"
+  status=0
+  wait "$pid" || status=$?
+  [ "$status" -eq 130 ]
+  grep -q "interrupted; the reports have the vectors that were run" err
+  grep -q "stopped early, the rest was not run" out
+  "$PYTHON" - <<'CHECK'
+import json
+report = json.load(open("r.json"))
+assert report["stopped_early"] and 0 < len(report["results"]) < 12000, len(report["results"])
+CHECK
+}
+
+@test "a port that hangs ends the run after five timeouts" {
+  run timeout 120 "$ATTEST" run "lib:$PORTS/port_hang.so" --timeout 0.3 --jobs 2
+  [ "$status" -eq 1 ]
+  has "stopped, because 5 vectors in a row ended by a timeout"
+  has "stopped early, the rest was not run"
+}
+
+@test "Ctrl-C ends a run at once, and without a result it leaves no report behind" {
   for port in hang hangs_in_load hangs_in_create; do
     timeout 50 "$ATTEST" run --port "lib:$PORTS/port_$port.so" --timeout 60 --junit r.xml \
       >out 2>err &
@@ -411,4 +436,37 @@ PATHS
     --junit stress.xml
   [ "$status" -eq 1 ]
   [ "$(paths_of stress.xml)" = "$SOURCE/cases/px4-v1.5.5/flight/hover.toml" ]
+}
+
+@test "what everybody types first is understood" {
+  cp "$STARTER" mine.so
+  for port in mine.so ./mine.so "--port ./mine.so"; do
+    run "$ATTEST" run $port --rate 250hz --profile v1.5.5 --group tpa
+    [ "$status" -eq 0 ]
+    has "(px4-v1.5.5, numeric, 1 rate)"
+    has "lib:./mine.so"
+  done
+  run "$ATTEST" smoke mine.so
+  [ "$status" -eq 0 ]
+  run "$ATTEST" run mine.so --port builtin
+  [ "$status" -eq 2 ]
+  printf '#!/bin/sh\nexit 3\n' >program
+  run "$ATTEST" smoke program
+  [ "$status" -eq 1 ]
+  has "neither a shared library nor an executable file"
+  chmod +x program
+  run "$ATTEST" smoke ./program
+  [ "$status" -eq 1 ]
+  has "proc:./program"
+  run "$ATTEST" run --filter attitude
+  [ "$status" -eq 2 ]
+  has 'no case has the name `attitude`; it is a group: `--group attitude` or `attitude/*`'
+  run "$ATTEST" sim hover
+  [ "$status" -eq 0 ]
+  has "px4-v1.5.5/flight/hover@250hz-iris-mujoco"
+  has "metric"
+  run "$ATTEST" new-port
+  [ "$status" -eq 2 ]
+  has "attest new-port mine --lang c"
+  has "python_law"
 }

@@ -205,7 +205,7 @@ CHECK
   [ "$status" -eq 2 ]
   run "$ATTEST" sim --out f.csv
   [ "$status" -eq 2 ]
-  has "needs a case and --rate, or --timing"
+  has "needs a case, or --timing"
   run "$ATTEST" stress --rates 250,500 --record-timing t.json
   [ "$status" -eq 2 ]
   has "records one rate"
