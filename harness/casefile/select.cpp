@@ -242,10 +242,8 @@ std::string scope_of(const Selection& selection) {
 
 // Each pattern must match a vector. Otherwise a misspelt filter would silently leave out vectors,
 // and a misspelt exclusion would run vectors that should be left out.
-// `groups`: of the suite.
 Result<void> check_patterns(const Selection& selection, const std::set<std::string>& matching,
-                            const std::vector<std::string>& names,
-                            const std::set<std::string>& groups) {
+                            const Known& known) {
   std::vector<std::string> idle;
   for (const auto& patterns : {selection.filters, selection.excludes}) {
     for (const std::string& pattern : patterns) {
@@ -253,13 +251,12 @@ Result<void> check_patterns(const Selection& selection, const std::set<std::stri
     }
   }
   if (idle.empty()) return {};
-  if (groups.contains(idle.front())) {
-    return fail(fmt::format("no case has the name `{0}`; it is a group: `--group {0}` or `{0}/*`",
-                            idle.front()));
+  if (known.groups.contains(idle.front())) {
+    return fail(fmt::format("`{0}` is a group: write `--group {0}` or `{0}/*`", idle.front()));
   }
   return fail(fmt::format("no case{} matches `{}`{}; `attest list` shows them all",
                           scope_of(selection), fmt::join(idle, "` or `"),
-                          suggestion(idle.front(), names)));
+                          suggestion(idle.front(), known.names)));
 }
 
 Result<std::vector<SelectedCase>> select_from(const std::vector<fs::path>& files,
@@ -276,7 +273,7 @@ Result<std::vector<SelectedCase>> select_from(const std::vector<fs::path>& files
   if (auto checked = check_known(selection, known); !checked) {
     return tl::unexpected(checked.error());
   }
-  if (auto checked = check_patterns(selection, matching, known.names, known.groups); !checked) {
+  if (auto checked = check_patterns(selection, matching, known); !checked) {
     return tl::unexpected(checked.error());
   }
   if (selected.empty()) {

@@ -83,7 +83,7 @@ class HelpFormat final : public CLI::Formatter {
   }
 
  private:
-  // A description, beside the names.
+  // A description, next to the names.
   std::string in_column(const std::string& text) const {
     const auto width = static_cast<std::size_t>(terminal_style(stdout).width);
     return width > 2 * get_column_width() ? wrapped(text, width - get_column_width()) : text;

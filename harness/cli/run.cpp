@@ -30,7 +30,7 @@ Result<void> check_paths(const RunOptions& options, const std::string& suite) {
 // Without this, a port that hangs costs the time limit for each of thousands of vectors.
 constexpr int most_timeouts_in_a_row = 5;
 
-// Runs the vectors, until an interrupt or until the port seems to hang for ever.
+// Runs the vectors, until an interrupt or until the port seems to hang.
 void run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
   Progress progress(plan.run.selected, Progress::on_stderr(globals.quiet));
   JobOptions<VectorResult> jobs;

@@ -127,9 +127,11 @@ class ContentsReader {
 
 std::string Release::to_string() const { return fmt::format("v{}.{}.{}", major, minor, patch); }
 
-ModuleContents::ModuleContents(Module module)
-    : module_(module), step_topic_(info_of(module).step_topic) {
+ModuleContents::ModuleContents(Module module) : module_(module) {
   for (LogTopic& topic : log_topics(module)) series_.emplace_back(std::move(topic));
+  while (series_[steps_].is_output() || series_[steps_].name() != info_of(module).step_topic) {
+    ++steps_;
+  }
 }
 
 bool ModuleContents::has_outputs() const {

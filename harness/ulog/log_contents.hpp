@@ -39,7 +39,7 @@ class ModuleContents {
   std::vector<LogSeries>& series() { return series_; }
   const std::vector<LogSeries>& series() const { return series_; }
   // The samples of the topic that triggers a step.
-  const LogSeries& steps() const { return *input(step_topic_); }
+  const LogSeries& steps() const { return series_[steps_]; }
   LogSeries& steps() { return const_cast<LogSeries&>(std::as_const(*this).steps()); }
   // The input or output topic of that name; null if the module has none.
   const LogSeries* input(std::string_view topic) const { return find(topic, false); }
@@ -62,7 +62,7 @@ class ModuleContents {
   const LogSeries* find(std::string_view topic, bool is_output) const;
 
   Module module_;
-  std::string step_topic_;
+  std::size_t steps_ = 0;  // index of the topic that triggers a step
   std::vector<LogSeries> series_;
   GapCounts gap_counts_;
   std::uint64_t first_step_us_ = 0;

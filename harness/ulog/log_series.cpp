@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 namespace attest::ulog {
@@ -51,7 +52,10 @@ std::size_t bytes_of(const LogField& field) {
 }  // namespace
 
 LogSeries::LogSeries(LogTopic topic) : topic_(std::move(topic)) {
-  for (const LogField& field : topic_.fields) row_bytes_ += bytes_of(field);
+  for (const LogField& field : topic_.fields) {
+    bytes_.push_back(bytes_of(field));
+    row_bytes_ += bytes_.back();
+  }
 }
 
 LogSeries::Place LogSeries::find_place(const Reader& reader, const Subscription& subscription,
@@ -111,19 +115,20 @@ void LogSeries::add(const Reader& reader, const Data& data) {
   if (!count(reader, data)) return;
   times_.push_back(newest_);
   sample_times_.push_back(newest_sample_time_);
+  unsigned char* at = values_.append(row_bytes_);
   for (std::size_t i = 0; i < places_.size(); ++i) {
     const std::uint64_t bits = bits_of(data, i);
-    const auto* const bytes = reinterpret_cast<const unsigned char*>(&bits);
-    values_.insert(values_.end(), bytes, bytes + bytes_of(topic_.fields[i]));
+    std::memcpy(at, &bits, bytes_[i]);
+    at += bytes_[i];
   }
 }
 
 void LogSeries::forget_before(std::size_t row) {
-  const auto rows = static_cast<std::ptrdiff_t>(row - forgotten_);
+  const std::size_t rows = row - forgotten_;
   if (rows == 0) return;
-  times_.erase(times_.begin(), times_.begin() + rows);
-  sample_times_.erase(sample_times_.begin(), sample_times_.begin() + rows);
-  values_.erase(values_.begin(), values_.begin() + rows * static_cast<std::ptrdiff_t>(row_bytes_));
+  times_.drop_front(rows);
+  sample_times_.drop_front(rows);
+  values_.drop_front(rows * row_bytes_);
   forgotten_ = row;
 }
 
@@ -154,13 +159,14 @@ std::vector<std::size_t> LogSeries::logged_channels() const {
 }
 
 void LogSeries::copy(std::size_t row, Sample& to) const {
-  auto at = values_.begin() + static_cast<std::ptrdiff_t>((row - forgotten_) * row_bytes_);
-  for (const LogField& field : topic_.fields) {
-    const Channel& channel = channels()[field.channel];
-    const auto count = static_cast<std::ptrdiff_t>(bytes_of(field));
+  if (row_bytes_ == 0) return;
+  const unsigned char* at = &values_[(row - forgotten_) * row_bytes_];
+  const auto table = channels();
+  for (std::size_t i = 0; i < bytes_.size(); ++i) {
+    const Channel& channel = table[topic_.fields[i].channel];
     std::uint64_t bits = 0;
-    std::copy_n(at, count, reinterpret_cast<unsigned char*>(&bits));
-    at += count;
+    std::memcpy(&bits, at, bytes_[i]);
+    at += bytes_[i];
     if (channel.type == ChannelType::f32) {
       set_value(channel, to, std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
     } else {

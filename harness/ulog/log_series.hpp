@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +13,33 @@
 #include "harness/ulog/reader.hpp"
 
 namespace attest::ulog {
+
+// A vector that is filled at its end, and emptied at its front a part at a time.
+template <typename T>
+class Queue {
+ public:
+  void push_back(const T& value) { values_.push_back(value); }
+  // Returns `count` new elements, to be written.
+  T* append(std::size_t count) {
+    values_.resize(values_.size() + count);
+    return values_.data() + values_.size() - count;
+  }
+  void drop_front(std::size_t count) {
+    begin_ += count;
+    if (2 * begin_ < values_.size()) return;  // so that each element moves once at most on average
+    values_.erase(values_.begin(), values_.begin() + static_cast<std::ptrdiff_t>(begin_));
+    begin_ = 0;
+  }
+  void clear() {
+    values_.clear();
+    begin_ = 0;
+  }
+  const T& operator[](std::size_t index) const { return values_[begin_ + index]; }
+
+ private:
+  std::vector<T> values_;
+  std::size_t begin_ = 0;
+};
 
 class LogSeries {
  public:
@@ -83,7 +109,8 @@ class LogSeries {
   std::uint64_t bits_of(const Data& data, std::size_t field) const;
 
   LogTopic topic_;
-  std::size_t row_bytes_ = 0;           // of a sample in values_
+  std::vector<std::size_t> bytes_;      // of each field in values_
+  std::size_t row_bytes_ = 0;           // of a sample there
   std::optional<std::size_t> located_;  // index of the subscription of these places
   std::optional<Column> time_, sample_time_;
   std::vector<Place> places_;  // of the topic's fields
@@ -93,9 +120,9 @@ class LogSeries {
   bool has_sample_times_ = true;
 
   std::size_t forgotten_ = 0;  // rows; the others are here
-  std::deque<std::uint64_t> times_;
-  std::deque<std::optional<std::uint64_t>> sample_times_;
-  std::deque<unsigned char> values_;  // sample by sample, each field in the bytes of its channel
+  Queue<std::uint64_t> times_;
+  Queue<std::optional<std::uint64_t>> sample_times_;
+  Queue<unsigned char> values_;  // sample by sample, each field in the bytes of its channel
 };
 
 }  // namespace attest::ulog

@@ -460,7 +460,7 @@ PATHS
   has "proc:./program"
   run "$ATTEST" run --filter attitude
   [ "$status" -eq 2 ]
-  has 'no case has the name `attitude`; it is a group: `--group attitude` or `attitude/*`'
+  has '`attitude` is a group: write `--group attitude` or `attitude/*`'
   run "$ATTEST" sim hover
   [ "$status" -eq 0 ]
   has "px4-v1.5.5/flight/hover@250hz-iris-mujoco"
