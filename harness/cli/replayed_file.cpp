@@ -13,6 +13,7 @@
 #include "harness/host/file_format.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/replay_document.hpp"
+#include "harness/report/text.hpp"
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/evaluate_log.hpp"
 

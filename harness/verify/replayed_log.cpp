@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "harness/golden/recorded.hpp"
 #include "harness/port/profiles.hpp"
 
 namespace attest {

@@ -5,6 +5,7 @@
 
 #include "harness/ulog/flight_log.hpp"
 #include "harness/ulog/reader.hpp"
+#include "harness/ulog/single_steps.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace attest::fuzz {
@@ -75,11 +76,26 @@ void check_unit(const LoggedUnit& unit) {
   }
 }
 
+void check_single_steps(const LoggedUnit& unit) {
+  if (!info_of(unit.module).is_of_cascade()) return;
+  const auto steps = single_steps_of(unit);
+  require(steps.has_value(), "the ticks of a unit in memory can be read");
+  Trace all;
+  require(steps->ticks->next_part(whole_trace, all).has_value(), "the single steps can be read");
+  const SingleSteps& found = *steps->single_steps;
+  require(all.samples.size() == found.with_own_setpoint + found.with_given_setpoint,
+          "the single steps are counted");
+  require(all.samples.size() <= unit.trace.samples.size(), "a single step is a step");
+}
+
 void check_flight(const std::filesystem::path& file) {
   const auto log = read_flight_log(file);
   if (!log) return require_readable(log.error(), file);
   for (const std::string& note : log->notes) require_readable(note);
-  for (const LoggedUnit& unit : log->units) check_unit(unit);
+  for (const LoggedUnit& unit : log->units) {
+    check_unit(unit);
+    check_single_steps(unit);
+  }
 }
 
 }  // namespace
