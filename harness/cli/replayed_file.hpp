@@ -41,7 +41,7 @@ struct Codec<cli::ReplayedFile> {
 namespace attest::cli {
 
 // The port starts before the file is read, because its process is a copy of another process, which
-// must not contain the recorded outputs. So if the port crashes or hangs on one unit of a log, its
+// must not contain the recorded outputs. So if a library crashes or hangs on one unit of a log, its
 // other unit is not run.
 class ReplayJob final : public PortJob<ReplayedFile> {
  public:

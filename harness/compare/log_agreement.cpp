@@ -174,16 +174,19 @@ class Agreement {
     ++found_.paired;
     if (!topic_.is_in(window_.got[at])) {
       ++found_.missing;
+      found_.mistakes += reference_agrees(at) ? 1 : 0;
       return note(at, topic_.fields.front());
     }
     std::size_t worst = topic_.fields.front();
     for (const std::size_t field : topic_.fields) {
       if (deviation_at(at, field) > deviation_at(at, worst)) worst = field;
     }
-    if (has_no_number(at)) ++found_.non_finite;
+    if (has_no_number(at) && reference_is_finite(at)) ++found_.non_finite;
     const double largest = deviation_at(at, worst);
     if (largest > deviations_.largest()) found_.worst = pair_at(at, worst);
     deviations_.add(largest);
+    constexpr double gross = 10;  // no right port rounds so differently
+    if (largest > gross * limits_.within && reference_agrees(at)) ++found_.mistakes;
     if (largest <= limits_.within)
       ++found_.within;
     else if (is_between(at))
@@ -202,13 +205,24 @@ class Agreement {
   // are.
   void leave_out(std::size_t at) {
     ++found_.left_out;
-    const auto is_finite = [&](std::size_t field) {
-      return std::isfinite(value_of(channels()[field], window_.reference[at]));
-    };
-    if (topic_.is_in(window_.got[at]) && has_no_number(at) &&
-        std::all_of(topic_.fields.begin(), topic_.fields.end(), is_finite)) {
+    if (topic_.is_in(window_.got[at]) && has_no_number(at) && reference_is_finite(at)) {
       ++found_.non_finite;
     }
+  }
+
+  bool reference_is_finite(std::size_t at) const {
+    return std::all_of(topic_.fields.begin(), topic_.fields.end(), [&](std::size_t field) {
+      return std::isfinite(value_of(channels()[field], window_.reference[at]));
+    });
+  }
+
+  bool reference_agrees(std::size_t at) const {
+    if (!topic_.is_in(window_.reference[at])) return false;
+    return std::all_of(topic_.fields.begin(), topic_.fields.end(), [&](std::size_t field) {
+      const Channel& channel = channels()[field];
+      return attest::distance(value_of(channel, window_.reference[at]),
+                              value_of(channel, window_.logged[at])) <= limits_.within;
+    });
   }
 
   bool has_no_number(std::size_t at) const {
@@ -224,7 +238,7 @@ class Agreement {
   }
 
   bool is_between(std::size_t at) const {
-    if (neighbours_ == LogAgreement::Neighbours::say_nothing) return false;
+    if (neighbours_ == LogAgreement::Neighbours::do_not_explain) return false;
     return std::all_of(topic_.fields.begin(), topic_.fields.end(), [&](std::size_t field) {
       const Channel& channel = channels()[field];
       if (deviation_at(at, field) <= limits_.within) return true;
@@ -267,8 +281,8 @@ double TopicAgreement::part_within() const { return part_of(within, paired); }
 double TopicAgreement::part_unexplained() const { return part_of(unexplained(), paired); }
 
 bool TopicAgreement::agrees(const LogLimits& limits) const {
-  return paired > 0 && non_finite == 0 && part_within() >= limits.least_part_within &&
-         part_unexplained() <= limits.most_unexplained;
+  return paired > 0 && non_finite == 0 && mistakes == 0 &&
+         part_within() >= limits.least_part_within && part_unexplained() <= limits.most_unexplained;
 }
 
 struct LogAgreement::Impl {

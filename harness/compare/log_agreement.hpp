@@ -55,6 +55,10 @@ struct TopicAgreement {
   // reference's, because a port with wild values would widen its own.
   std::size_t between_samples = 0;
   std::optional<LoggedPair> first_unexplained;
+  // Ticks at which the reference agrees with the log, so the inputs are known, and the port is off
+  // by more than ten times the tolerance or does not publish. One is enough for the port not to
+  // agree.
+  std::size_t mistakes = 0;
   std::optional<LoggedPair> worst;  // the first with the largest deviation, of those with numbers
 
   std::size_t unexplained() const { return paired - within - between_samples; }
@@ -68,7 +72,7 @@ class LogAgreement {
  public:
   // Whether a deviation can be explained by the two neighbours of a tick. Not if the ticks do not
   // follow each other.
-  enum class Neighbours : std::uint8_t { explain, say_nothing };
+  enum class Neighbours : std::uint8_t { explain, do_not_explain };
 
   // `logged`: the channels of the log.
   LogAgreement(const ChannelSet& logged, const LogLimits& limits,

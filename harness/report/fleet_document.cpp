@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,13 +17,17 @@ struct FleetRow {
   std::vector<Cell> cells;
 
   // Lower is worse.
-  int rank() const { return fails_a_run(verdict) ? 0 : verdict == Verdict::pass ? 2 : 1; }
+  int rank() const {
+    if (fails_a_run(verdict)) return verdict == Verdict::fail ? 1 : 0;
+    return verdict == Verdict::pass ? 3 : 2;
+  }
 };
 
-// A number that JSON may have as null, because it is not finite.
+// A number that is not finite is no number in JSON.
 double number_in(const nlohmann::ordered_json& json, const char* key) {
   const auto found = json.find(key);
-  return found != json.end() && found->is_number() ? found->get<double>() : 0;
+  return found != json.end() && found->is_number() ? found->get<double>()
+                                                   : std::numeric_limits<double>::infinity();
 }
 
 FleetRow row_of(const nlohmann::ordered_json& entry, Verdict verdict, const std::string& link) {
@@ -81,8 +87,8 @@ Document fleet_document(const std::string& port, const std::vector<FleetLog>& lo
                        "largest deviation", "reason"}};
   std::size_t failed = 0, passed = 0;
   for (FleetRow& row : rows) {
-    failed += row.rank() == 0 ? 1 : 0;
-    passed += row.rank() == 2 ? 1 : 0;
+    failed += fails_a_run(row.verdict) ? 1 : 0;
+    passed += row.verdict == Verdict::pass ? 1 : 0;
     table.rows.push_back(std::move(row.cells));
   }
   Document document;

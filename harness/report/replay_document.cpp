@@ -114,6 +114,7 @@ void add_deviations(const TopicAgreement& topic, const LogLimits& limits, const 
                "neighbouring samples");
     }
     add_part(topic.unexplained(), "not explained");
+    if (topic.mistakes > 0) add_part(topic.mistakes, "wrong where the reference agrees");
     if (topic.missing > 0) add_part(topic.missing, "not published by the port");
     if (topic.non_finite > 0) {
       add_part(topic.non_finite, "NaN or infinity where the log has a number");
@@ -125,8 +126,13 @@ void add_deviations(const TopicAgreement& topic, const LogLimits& limits, const 
   } else if (topic.first_unexplained) {
     const LoggedPair& pair = *topic.first_unexplained;
     const Channel& channel = channels()[pair.channel];
-    add("  first one not explained: tick {}, {:.3f} s after tick 0, in {}", pair.tick, pair.after_s,
-        channel_with_unit(channel));
+    if (topic.condition.empty()) {
+      add("  first one not explained: tick {}, {:.3f} s after tick 0, in {}", pair.tick,
+          pair.after_s, channel_with_unit(channel));
+    } else {
+      add("  first one: at {:.3f} s in {}", 1e-6 * static_cast<double>(pair.timestamp_us),
+          channel_with_unit(channel));
+    }
     add("    got    {}", value_text(channel, pair.got));
     add("    logged {}", value_text(channel, pair.logged));
   }
@@ -197,6 +203,7 @@ ordered_json topic_of(const TopicAgreement& topic, std::size_t logged, std::size
                       {"between_samples", topic.between_samples},
                       {"unexplained", topic.unexplained()},
                       {"missing", topic.missing},
+                      {"mistakes", topic.mistakes},
                       {"non_finite", topic.non_finite},
                       {"median", json_of(topic.median)},
                       {"p90", json_of(topic.p90)},

@@ -40,6 +40,8 @@ const char* text_of(Unfit why) {
       return "with sticks, and without the setpoint of the step";
     case Unfit::reset:
       return "at a reset of the estimator";
+    case Unfit::other_wings:
+      return "in fixed-wing flight";
   }
   return "";
 }
@@ -86,6 +88,7 @@ std::optional<Unfit> Candidates::of_rate_unit(const LoggedSetpoint& setpoint, Ca
   is_output_ = out.vehicle_torque_setpoint.published != 0 &&
                out.vehicle_thrust_setpoint.published != 0 && out.rate_ctrl_status.published != 0;
   if (!is_output_) return std::nullopt;
+  if (!flies_by_rotors(Module::rate_unit, step.sample)) return Unfit::other_wings;
   step.setpoint_us = setpoint.time_us;
   if (is_acro(step.sample)) {
     give_acro_setpoint(step);

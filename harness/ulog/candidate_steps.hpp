@@ -26,7 +26,7 @@ struct Candidate {
 };
 
 // Why a step with an output is no candidate.
-enum class Unfit : std::uint8_t { nothing_known, no_own_setpoint, reset };
+enum class Unfit : std::uint8_t { nothing_known, no_own_setpoint, reset, other_wings };
 const char* text_of(Unfit why);
 
 // Makes candidates of the ticks of a unit. REQUIRES: `log` outlives it.

@@ -115,7 +115,7 @@ struct FlightLog {
 //
 // An output topic with the field `timestamp_sample` is paired with the earlier step whose sample
 // has this time. Any other output is paired with the last step that is not after it; in a log of
-// v1.14 to v1.16 only if that step is at most 2 ms earlier, because the log may lack a later step.
+// v1.14 to v1.18 only if that step is at most 2 ms earlier, because the log may lack a later step.
 // Not paired: a second output of the same step, and an output that is logged 1000 steps after its
 // own.
 //

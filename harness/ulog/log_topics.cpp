@@ -13,7 +13,7 @@ struct StateOfChannel {
   LogState state;
 };
 
-// Source: the message vehicle_status in the documentation of PX4 v1.14 to v1.16.
+// Source: the message vehicle_status in the documentation of PX4 v1.14 to v1.18.
 constexpr StateOfChannel states[] = {
     {"in/vehicle_status.armed", {"arming_state", 2, 1}},
     {"in/vehicle_status.is_rotary_wing", {"vehicle_type", 1, 0}},

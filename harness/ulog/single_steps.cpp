@@ -21,14 +21,14 @@ class Ages {
  public:
   void add(const Candidate& step) {
     const bool is_new = !last_ || last_->first != step.setpoint_us;
-    if (is_new) tells_ = last_ && !ulog::same_bits(last_->second, step.given);
+    if (is_new) has_new_thrust_ = last_ && !ulog::same_bits(last_->second, step.given);
     last_ = {step.setpoint_us, step.given};
     Count& count = counts_[std::min(step.age_us, oldest_age_us) / width_us];
     if (!step.has_same_thrust()) {
       ++count.other;
     } else {
       ++count.same;
-      if (tells_) ++count.told;
+      if (has_new_thrust_) ++count.with_new_thrust;
     }
   }
 
@@ -37,12 +37,13 @@ class Ages {
   std::uint64_t limit_us() const {
     std::uint64_t limit = 0;
     bool shows = false;
-    std::size_t told = 0, other = 0;
+    std::size_t with_new_thrust = 0, other = 0;
     for (const auto& [bin, count] : counts_) {
-      told += count.told;
+      with_new_thrust += count.with_new_thrust;
       other += count.other;
-      shows = shows || count.told > 0 || count.other > 0;
-      if (count.told > 0 && 100 * other <= told + other) limit = (bin + 1) * width_us;
+      shows = shows || count.with_new_thrust > 0 || count.other > 0;
+      if (count.with_new_thrust > 0 && 100 * other <= with_new_thrust + other)
+        limit = (bin + 1) * width_us;
     }
     return shows ? limit : oldest_age_us;
   }
@@ -61,13 +62,15 @@ class Ages {
  private:
   struct Count {
     std::size_t same = 0, other = 0;  // steps with the thrust of the setpoint, and without
-    std::size_t told = 0;  // of `same`: the thrust differs from that of the setpoint before
+    std::size_t with_new_thrust =
+        0;  // of `same`: the thrust differs from that of the setpoint before
   };
   static constexpr std::uint64_t width_us = 100, oldest_age_us = 10'000'000;
 
   std::map<std::uint64_t, Count> counts_;                 // by age, in units of width_us
   std::optional<std::pair<std::uint64_t, Thrust>> last_;  // setpoint: its time and thrust
-  bool tells_ = false;  // whether the thrust of the last setpoint differs from the one before
+  bool has_new_thrust_ =
+      false;  // whether the thrust of the last setpoint differs from the one before
 };
 
 // The candidates of a unit, in memory if they are few. Otherwise the ticks are read again each

@@ -35,6 +35,12 @@ std::string why_it_fails(const TopicAgreement& topic, const LogLimits& limits) {
     return fmt::format("NaN or infinity in {} samples of {} where the log has numbers",
                        topic.non_finite, topic.topic);
   }
+  if (topic.mistakes > 0) {
+    return fmt::format(
+        "{} samples of {} are wrong: the reference agrees with the log there, and "
+        "the port is off by more than {:g} or does not publish",
+        topic.mistakes, topic.topic, 10 * limits.within);
+  }
   if (topic.part_within() < limits.least_part_within) {
     return fmt::format("{:.1f}% of {} are within {:g}; at least {:g}% must be",
                        100 * topic.part_within(), topic.topic, limits.within,
@@ -282,6 +288,7 @@ Result<LogResult> evaluate_log(const LoggedUnit& log, const std::string& profile
                                        !log.ticks, of_steps);
   if (!compared) return tl::unexpected(compared.error());
   VectorResult& result = of_steps.result;
+  if (result.verdict != Verdict::pass) return of_steps;  // the port has a fault
   judge_topics(of_steps.topics, limits, result);
   if (of_steps.topics.empty()) result.reason = why_no_step(*of_steps.single_steps, log.not_judged);
   const bool shows_more = result.verdict != Verdict::skip || found.result.reason.empty();

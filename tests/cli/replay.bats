@@ -200,7 +200,7 @@ flight_log() {
   has "the profile is taken to be px4-v1.5.5"
   run "$ATTEST" replay "$log" --port fault:quat-order-xyzw
   [ "$status" -eq 1 ]
-  has "of vehicle_rates_setpoint are within 0.0001; at least 85% must be"
+  has "samples of vehicle_rates_setpoint are wrong: the reference agrees with the log there"
   has "FAIL 0 of 1"
 }
 
@@ -277,7 +277,7 @@ WILD
     wild $value
     run "$ATTEST" replay "$log" --port lib:./wild.so
     [ "$status" -eq 1 ]
-    has "4.0% of vehicle_rates_setpoint are not explained; at most 2% may be"
+    has "samples of vehicle_rates_setpoint are wrong: the reference agrees with the log there"
   done
   wild NAN
   run "$ATTEST" replay "$log" --port lib:./wild.so

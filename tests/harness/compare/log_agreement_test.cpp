@@ -116,13 +116,32 @@ TEST(LogAgreement, AnExcursionOfThePortExplainsNothing) {
   EXPECT_EQ(next.unexplained(), 3u);
 }
 
+TEST(LogAgreement, OneGrossDeviationIsAMistakeWhereTheReferenceAgrees) {
+  Rolls got = ramp(0), reference = ramp(0);
+  got[50] = *got[50] + 0.002f;
+  TopicAgreement found = agreement(got, ramp(0), {}, reference);
+  EXPECT_EQ(found.mistakes, 1u);
+  EXPECT_FALSE(found.agrees({}));
+  got[50] = std::nullopt;  // not published
+  EXPECT_EQ(agreement(got, ramp(0), {}, reference).mistakes, 1u);
+  got[50] = *ramp(0)[50] + 0.0005f;
+  found = agreement(got, ramp(0), {}, reference);
+  EXPECT_EQ(found.mistakes, 0u);
+  EXPECT_TRUE(found.agrees({}));
+  got[50] = *ramp(0)[50] + 0.002f;
+  reference[50] = *ramp(0)[50] + 0.001f;  // the log lacks an input of this tick
+  EXPECT_EQ(agreement(got, ramp(0), {}, reference).mistakes, 0u);
+}
+
 TEST(LogAgreement, ANumberIsNeverAnsweredByNanOrInfinity) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   for (const float wrong : {nan, infinity, -infinity}) {
     Rolls got = ramp(0);
     got[50] = wrong;
-    const TopicAgreement found = agreement(got, ramp(0));
+    const TopicAgreement found = agreement(got, ramp(0), {}, ramp(0));
     EXPECT_EQ(found.non_finite, 1u);
+    // Only if the reference has a number, too.
+    EXPECT_EQ(agreement(got, ramp(0), {}, got).non_finite, 0u);
     EXPECT_EQ(found.unexplained(), 1u);
     EXPECT_EQ(found.first_unexplained->tick, 50u);
     EXPECT_FALSE(found.agrees({}));  // 1% of wrong numbers would be allowed

@@ -173,6 +173,7 @@ Sample rate_step(std::uint64_t time, float given_thrust, float used_thrust) {
   Sample sample;
   sample.rate_in.timestamp = time;
   sample.rate_in.vehicle_control_mode = {1, 0, 1, 1};
+  sample.rate_in.vehicle_status.is_rotary_wing = 1;
   sample.rate_in.vehicle_rates_setpoint.thrust_body[2] = given_thrust;
   sample.rate_out.vehicle_torque_setpoint.published = 1;
   sample.rate_out.rate_ctrl_status.published = 1;
@@ -191,6 +192,19 @@ TEST(SingleSteps, ARateUnitIsDisarmedSoThatItsIntegralIsZero) {
   const Trace all = all_of(single_steps_of(log).value());
   ASSERT_EQ(all.samples.size(), 10u);
   EXPECT_EQ(all.samples[0].rate_in.vehicle_control_mode.flag_armed, 0);
+}
+
+TEST(SingleSteps, FixedWingFlightIsLeftOut) {
+  LoggedUnit log = log_of(Module::rate_unit, "rate_ctrl_status");
+  for (std::uint64_t i = 1; i <= 20; ++i) {
+    const auto thrust = -0.01F * static_cast<float>(i);
+    Sample sample = rate_step(10'000 * i, thrust, thrust);
+    sample.rate_in.vehicle_status.is_rotary_wing = i <= 15 ? 1 : 0;
+    add(log, sample, {Known::all, 10'000 * i - 1'000});
+  }
+  const LoggedUnit steps = single_steps_of(log).value();
+  EXPECT_EQ(all_of(steps).samples.size(), 15u);
+  EXPECT_THAT(steps.single_steps->left_out, ElementsAre(Field(&SingleSteps::LeftOut::outputs, 5u)));
 }
 
 TEST(SingleSteps, TheBatteryScalesTheThrust) {

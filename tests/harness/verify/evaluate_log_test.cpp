@@ -253,15 +253,28 @@ TEST(EvaluateLog, ASparseLogJudgesItsSingleSteps) {
   EXPECT_EQ(right.topics[0].condition, "setpoint younger than 1.1 ms");
   EXPECT_EQ(right.topics[0].paired, 99u);
   EXPECT_LT(right.topics[0].largest, 1e-6);  // with the integral that the step used
-  ASSERT_TRUE(right.topics[0].worst);
-  EXPECT_EQ(right.topics[0].worst->timestamp_us,
-            log.trace.samples[right.topics[0].worst->tick].in.timestamp);
   // A single step does not show what the integral does.
   for (const char* fault : {"i-missing", "integral-on-the-ground", "disarmed-keeps-integral"}) {
     const std::string port = std::string("fault:cascade-") + fault;
     EXPECT_EQ(result_of(log, port.c_str()).result.verdict, Verdict::pass) << fault;
   }
   EXPECT_EQ(result_of(log, "fault:cascade-rate-in-degrees").result.verdict, Verdict::fail);
+}
+
+TEST(EvaluateLog, TheWorstSingleStepHasItsTime) {
+  const LoggedUnit log = sparse_log();
+  const LogResult wrong = result_of(log, "fault:cascade-rate-in-degrees");
+  ASSERT_TRUE(wrong.topics[0].worst);
+  EXPECT_EQ(wrong.topics[0].worst->timestamp_us,
+            log.trace.samples[wrong.topics[0].worst->tick].in.timestamp);
+}
+
+TEST(EvaluateLog, TheReasonOfAPortsFaultStays) {
+  InProcessHost host(open_builtin());
+  const LogResult found = evaluate_log(sparse_log(), "our-law", host, {}).value();
+  EXPECT_NE(found.result.verdict, Verdict::pass);
+  EXPECT_THAT(found.result.reason, testing::Not(HasSubstr("no single step")));
+  EXPECT_FALSE(found.single_steps);
 }
 
 TEST(EvaluateLog, TheReferenceShowsUpToWhichAgeSetpointsWereInUse) {
