@@ -261,7 +261,7 @@ class LogReading {
     const StepGaps gaps = log.step_gaps(rate_hz);
     auto unit = unit_of_log(std::move(log), first, rules, path_.string());
     if (!unit) return unit;
-    if (log_.dropouts > 0 || !log_.damage.empty()) unit->has_every_step = false;
+    if (log_.dropouts > 0 || log_.may_lack_samples) unit->has_every_step = false;
     if (rules == LogRules::cascade && !used.empty()) unit->has_every_step = false;
     if (rules == LogRules::cascade) judge_steps(gaps, rate_hz, *unit);
     return unit;

@@ -41,7 +41,7 @@ Result<Field> parse_field(std::string_view text) {
   const std::string_view name = space == text.npos ? "" : text.substr(space + 1);
   const auto [type_name, count] = split_brackets(text.substr(0, space));
   if (type_name.empty() || type_name.find_first_of("[]") != text.npos || name.empty() ||
-      name.find(' ') != text.npos || count.value_or(0) == 0 || text.size() > most_characters) {
+      name.find(' ') != text.npos || !count || text.size() > most_characters) {
     return fail(fmt::format("`{}` is not a type and a name, as in `float[4] q`",
                             text.substr(0, most_characters)));
   }
@@ -66,6 +66,9 @@ Result<const Format*> Formats::add(std::string_view definition) {
     if (end > 0) {
       auto field = parse_field(rest.substr(0, end));
       if (!field) return fail(fmt::format("format {}: {}", format.name, field.error().message));
+      if (field->count == 0) {
+        return fail(fmt::format("format {}: the field {} is empty", format.name, field->name));
+      }
       format.fields.push_back(*std::move(field));
     }
     rest.remove_prefix(std::min(end + 1, rest.size()));

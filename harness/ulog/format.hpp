@@ -63,7 +63,8 @@ struct Field {
   }
 };
 
-// Parses "float[4] q". Errors: it does not have this form.
+// Parses "float[4] q". An array may be empty, as the `char[0] perf_top_preflight` of PX4's info
+// messages. Errors: it does not have this form.
 Result<Field> parse_field(std::string_view text);
 
 struct Format {

@@ -109,6 +109,7 @@ class ContentsReader {
 
   void add_damage() {
     const Damage& damage = reader_.damage();
+    log_.may_lack_samples = damage.may_lack_samples();
     for (const auto& finding : damage.first) {
       log_.damage.push_back(fmt::format("byte {}: {}", finding.offset, finding.message));
     }

@@ -75,6 +75,7 @@ struct LogContents {
   std::optional<Release> release;        // ver_sw_release
   std::size_t dropouts = 0;              // times that the logger lost messages
   std::vector<std::string> damage;       // one line each
+  bool may_lack_samples = false;         // because of the damage
 
   bool is_of_attest() const { return system == "attest"; }  // written by write_trace()
   ModuleContents& of(Module module);

@@ -107,6 +107,7 @@ void Reader::start() {
   active_.clear();
   section_ends_.clear();
   offset_ = header_bytes;
+  section_ = 0;
   std::uint64_t begin = first_message_;
   for (const std::uint64_t offset : header_.appended_offsets) {
     if ((header_.incompatible_flags & has_appended_data) == 0 || offset == 0) continue;
@@ -117,7 +118,6 @@ void Reader::start() {
     }
   }
   section_ends_.push_back(file_size_);
-  section_ = 0;
   end_ = section_ends_.front();
   position_ = first_message_;
 }
@@ -222,13 +222,17 @@ bool Reader::accept_value(char type, std::string_view body, Message& message) {
   }
   const std::string_view key = body.substr(1, load<std::uint8_t>(body.data()));
   const std::string_view value = body.substr(1 + key.size());
+  // A wrong length would lead to garbage, which counts as damage of its own. A data message does
+  // not become one of these by a single wrong bit.
+  const bool is_harmless = type != 'P';
   const auto field = parse_field(key);
-  if (!field) return refuse(bad_message, "key " + field.error().message);
+  if (!field) return refuse(bad_message, "key " + field.error().message, is_harmless);
   const bool is_number = field->type == Type::i32 || field->type == Type::f32;
   if (field->type == Type::nested || (is_parameter && (!is_number || field->is_array)) ||
       value.size() != std::uint64_t{bytes_of(field->type)} * field->count) {
     return refuse(bad_message,
-                  fmt::format("`{}` with {} bytes in a message {}", key, value.size(), type));
+                  fmt::format("`{}` with {} bytes in a message {}", key, value.size(), type),
+                  is_harmless);
   }
   const std::string_view name = key.substr(key.find(' ') + 1);
   message = KeyValue{type, flags, name, field->type, field->is_array, value};
@@ -258,8 +262,9 @@ bool Reader::accept_subscription(std::string_view body, Message& message) {
   return true;
 }
 
-bool Reader::refuse(DamageKind kind, const std::string& why) {
+bool Reader::refuse(DamageKind kind, const std::string& why, bool is_harmless) {
   ++damage_.counts[static_cast<std::size_t>(kind)];
+  if (is_harmless || is_appended()) ++damage_.harmless;
   if (damage_.first.size() < Damage::most_findings) {
     damage_.first.push_back({offset_, kind, printable_part(why)});
   }
@@ -283,6 +288,19 @@ void Reader::resynchronise(bool is_cut_off) {
   refuse(is_cut_off && !is_found ? cut_off : garbage,
          fmt::format("not a whole message; {} bytes are skipped, {}", position_ - offset_,
                      is_found ? "up to a sync message" : "to the end, without a sync message"));
+}
+
+Reader::Place Reader::place_of_last() const {
+  return {offset_, section_, active_, damage_, unknown_messages_};
+}
+
+void Reader::return_to(const Place& place) {
+  position_ = place.position;
+  section_ = place.section;
+  end_ = section_ends_[section_];
+  active_ = place.active;
+  damage_ = place.damage;
+  unknown_messages_ = place.unknown_messages;
 }
 
 Result<Column> Reader::find(std::string_view topic, std::uint8_t multi_id,

@@ -112,9 +112,13 @@ struct Damage {
 
   std::array<std::uint64_t, 6> counts{};  // by kind
   std::vector<Finding> first;             // the first most_findings
-  std::uint64_t skipped_bytes = 0;        // skipped to find the next sync message
+  // Of all findings: those that cannot have removed a sample. These are info messages and defaults
+  // of parameters whose length is intact, and all damage in an appended part.
+  std::uint64_t harmless = 0;
+  std::uint64_t skipped_bytes = 0;  // skipped to find the next sync message
   std::uint64_t count(DamageKind kind) const { return counts[static_cast<std::size_t>(kind)]; }
   std::uint64_t total() const { return std::accumulate(counts.begin(), counts.end(), 0ULL); }
+  bool may_lack_samples() const { return total() > harmless; }
 };
 
 struct Header {
@@ -141,6 +145,19 @@ class Reader {
   // Reads the next valid message. False: after the last one. Errors: the file cannot be read.
   Result<bool> next(Message& message);
 
+  // The state before the last message, so that it can be read again.
+  struct Place {
+    std::uint64_t position;
+    std::size_t section;
+    std::vector<const Subscription*> active;
+    Damage damage;
+    std::uint64_t unknown_messages;
+  };
+  // REQUIRES: the last message was Data.
+  Place place_of_last() const;
+  // next() then reads the message of that place. Formats and subscriptions stay known.
+  void return_to(const Place& place);
+
   // The place of the last message in the file, and whether it is in a part that was appended after
   // the end of the log, such as the report of a crash.
   std::uint64_t offset() const { return offset_; }
@@ -163,7 +180,7 @@ class Reader {
   bool accept_data(std::string_view body, Message& message);
   bool accept_value(char type, std::string_view body, Message& message);
   bool accept_subscription(std::string_view body, Message& message);
-  bool refuse(DamageKind kind, const std::string& why);  // returns false
+  bool refuse(DamageKind kind, const std::string& why, bool is_harmless = false);  // returns false
   void resynchronise(bool is_cut_off);
 
   std::string file_;

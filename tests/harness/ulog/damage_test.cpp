@@ -147,6 +147,42 @@ TEST_F(ULogDamage, BodiesThatTheirTypeDoesNotAllow) {
   }
 }
 
+TEST_F(ULogDamage, AnEmptyTextIsNoDamage) {
+  Crafted log = started();
+  log.value('I', "char[0] perf_top_preflight", "").value('M', 0, "char[0] perf_top", "");
+  const LogLines read = this->read(log.data(0, sample(2)));
+  EXPECT_EQ(read.damage.total(), 0u);
+  EXPECT_THAT(std::vector(read.lines.begin() + 2, read.lines.end()),
+              ElementsAre("I perf_top_preflight=", "M perf_top=", line(2)));
+}
+
+TEST_F(ULogDamage, OnlySomeDamageCanHaveRemovedASample) {
+  const auto may_lack = [&](Crafted log) {
+    const Damage damage = read(log.data(0, sample(2))).damage;
+    EXPECT_GT(damage.total(), 0u);
+    return damage.may_lack_samples();
+  };
+  EXPECT_FALSE(may_lack(started().value('I', "char[3] x", "ab")));
+  EXPECT_FALSE(may_lack(started().value('M', 0, "", "")));
+  EXPECT_FALSE(may_lack(started().value('Q', 1, "double x", "12345678")));
+  EXPECT_TRUE(may_lack(started().value('P', "int16_t x", "ab")));
+  EXPECT_TRUE(may_lack(started().data(0, sample(1).substr(1))));
+  EXPECT_TRUE(may_lack(started().append(std::string("\x04\0I1234567", 10)).sync()));
+  EXPECT_TRUE(may_lack(started().append("123").sync()));
+}
+
+TEST_F(ULogDamage, DamageInAnAppendedPartRemovesNoSample) {
+  const auto build = [](std::uint64_t appended_at) {
+    Crafted log;
+    log.flag_bits(1, appended_at).format("a:uint64_t timestamp;").subscribe(0, "a");
+    return log.data(0, raw(std::uint64_t{1}));
+  };
+  Crafted log = build(build(0).size());
+  const Damage damage = read(log.append("123")).damage;
+  EXPECT_EQ(damage.total(), 1u);
+  EXPECT_FALSE(damage.may_lack_samples());
+}
+
 TEST_F(ULogDamage, GarbageUpToASyncMessage) {
   // Bytes that are no head, a body too short for its type, and a length past the end.
   for (const std::string& garbage : {std::string(100, '\0'), std::string("\x01\0A12", 5),

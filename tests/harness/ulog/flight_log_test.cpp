@@ -1,6 +1,7 @@
 // Which control_state an output answers, and what the controller was given at each step.
 #include "harness/ulog/flight_log.hpp"
 
+#include <fstream>
 #include <map>
 #include <utility>
 
@@ -304,6 +305,17 @@ TEST_F(FlightLogFile, LostMessagesMeanMissingSteps) {
   const FlightLog log = read();
   EXPECT_FALSE(log.units[0].has_every_step);
   EXPECT_THAT(log.notes, Contains(HasSubstr("lost messages")));
+}
+
+TEST_F(FlightLogFile, ABadInfoMessageMeansNoMissingStep) {
+  start();
+  add_state(5000);
+  read();
+  std::ofstream(path(), std::ios::binary | std::ios::app)
+      << ulog::Crafted().value('I', "char[3] x", "ab").bytes().substr(16);
+  const FlightLog log = read();
+  EXPECT_THAT(log.notes, Contains(HasSubstr("damaged: byte ")));
+  EXPECT_TRUE(log.units[0].has_every_step);
 }
 
 TEST_F(FlightLogFile, ADamagedLogIsReplayedUpToThere) {
