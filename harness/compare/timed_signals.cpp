@@ -12,24 +12,36 @@
 #include "harness/trace/csv_layout.hpp"
 #include "harness/trace/csv_rows.hpp"
 #include "harness/trace/plant_columns.hpp"
+#include "harness/ulog/left_out.hpp"
 #include "harness/ulog/log_topics.hpp"
 #include "harness/ulog/reader.hpp"
+#include "harness/ulog/time_check.hpp"
 
 namespace attest {
 namespace {
 
 struct LeftOut {
-  std::size_t not_later = 0, too_late = 0, without_time = 0;
+  std::size_t not_later = 0, absurd = 0, too_late = 0, without_time = 0;
 
-  // `what`: "samples of pose".
-  void note(const std::string& what, std::vector<std::string>& notes) const {
-    const auto add = [&](std::size_t count, const std::string& why) {
-      if (count > 0) notes.push_back(fmt::format("{} {} left out, because {}", count, what, why));
-    };
-    add(not_later, "their timestamps do not increase");
-    add(too_late, fmt::format("their timestamps are beyond {} us", latest_us));
-    add(without_time, "the topic has no timestamp");
+  void add_to(ulog::LeftOutSamples& samples, const std::string& topic) const {
+    samples.add(ulog::LeftOutSamples::not_later, topic, not_later);
+    samples.add(ulog::LeftOutSamples::absurd, topic, absurd);
+    samples.add(beyond(), topic, too_late);
+    samples.add(ulog::LeftOutSamples::without_time, topic, without_time);
   }
+
+  // For rows, which have no topic.
+  void note_rows(std::vector<std::string>& notes) const {
+    const auto add = [&](std::size_t count, const std::string& why) {
+      if (count == 0) return;
+      notes.push_back(
+          fmt::format("{} row{} left out, because {}", count, count == 1 ? "" : "s", why));
+    };
+    add(not_later, ulog::LeftOutSamples::not_later);
+    add(too_late, beyond());
+  }
+
+  static std::string beyond() { return fmt::format("the time is beyond {} us", latest_us); }
 };
 
 // Appends value(i) to each signal i, unless the sample is left out.
@@ -80,9 +92,13 @@ TimedTopic topic_of(const ulog::Subscription& subscription) {
   return topic;
 }
 
-void add_data(const ulog::Data& data, TimedTopic& topic) {
+void add_data(const ulog::Data& data, ulog::TimeFit fit, TimedTopic& topic) {
   if (!topic.time) {
     ++topic.left_out.without_time;
+    return;
+  }
+  if (fit == ulog::TimeFit::too_late) {
+    ++topic.left_out.absurd;
     return;
   }
   add_sample(topic.signals, topic.time->of<std::uint64_t>(data), topic.left_out,
@@ -97,13 +113,17 @@ Result<TimedSignals> all_signals_of_log(const std::filesystem::path& path) {
   if (!reader) return tl::unexpected(reader.error());
   TopicsOfLog topics;
   std::vector<TimedTopic*> by_subscription;
+  ulog::TimeCheck times;
   ulog::Message message;
   while (true) {
     const auto more = reader->next(message);
     if (!more) return tl::unexpected(more.error());
     if (!*more) break;
-    const auto* data = std::get_if<ulog::Data>(&message);
-    if (data == nullptr || data->subscription->format == nullptr) continue;
+    if (!std::holds_alternative<ulog::Data>(message)) continue;
+    const auto fit = times.check(*reader, message);
+    if (!fit) return tl::unexpected(fit.error());
+    const auto* data = &std::get<ulog::Data>(message);
+    if (data->subscription->format == nullptr) continue;
     const std::size_t index = data->subscription->index;
     if (by_subscription.size() <= index) by_subscription.resize(index + 1);
     if (by_subscription[index] == nullptr) {
@@ -112,17 +132,19 @@ Result<TimedSignals> all_signals_of_log(const std::filesystem::path& path) {
       if (is_new) added->second = topic_of(subscription);
       by_subscription[index] = &added->second;
     }
-    add_data(*data, *by_subscription[index]);
+    add_data(*data, *fit, *by_subscription[index]);
   }
   TimedSignals signals{path.string(), {}, {}};
+  ulog::LeftOutSamples left_out;
   for (auto& [instance, topic] : topics) {
     std::move(topic.signals.begin(), topic.signals.end(), std::back_inserter(signals.all));
     const auto& [name, multi_id] = instance;
-    topic.left_out.note("samples of " + name_of_topic(name, multi_id), signals.notes);
+    topic.left_out.add_to(left_out, name_of_topic(name, multi_id));
   }
+  signals.notes = left_out.notes();
   if (const auto damages = reader->damage().total(); damages > 0) {
-    signals.notes.push_back(fmt::format("damaged in {} places; the first: byte {}: {}", damages,
-                                        reader->damage().first[0].offset,
+    signals.notes.push_back(fmt::format("damaged in {} place{}; the first: byte {}: {}", damages,
+                                        damages == 1 ? "" : "s", reader->damage().first[0].offset,
                                         reader->damage().first[0].message));
   }
   return signals;
@@ -204,7 +226,7 @@ Result<TimedSignals> all_signals_of_csv(const std::filesystem::path& path) {
     add_sample(signals.all, row.at<std::uint64_t>(Row::time), left_out,
                [&](std::size_t i) { return row.at<float>(Row::first + sizeof(float) * i); });
   }
-  left_out.note("rows", signals.notes);
+  left_out.note_rows(signals.notes);
   return signals;
 }
 
@@ -216,8 +238,8 @@ void leave_out_repeated_names(TimedSignals& signals) {
   const std::string name = first->name;
   const auto end = std::unique(first, signals.all.end(), repeated);
   signals.notes.push_back(
-      fmt::format("{} signals left out, because another one has the same name; the first: {}",
-                  signals.all.end() - end, name));
+      fmt::format("{} signal{} left out, because another one has the same name; the first: {}",
+                  signals.all.end() - end, signals.all.end() - end == 1 ? "" : "s", name));
   signals.all.erase(end, signals.all.end());
 }
 

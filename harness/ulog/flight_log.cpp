@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "harness/ulog/format.hpp"
+#include "harness/ulog/left_out.hpp"
 #include "harness/ulog/own_topics.hpp"
 #include "harness/ulog/unit_log.hpp"
 
@@ -47,7 +48,13 @@ bool is_optional(std::string_view field) {
 // What the log lacks to replay a module; empty if it has enough.
 std::string lacking(const ModuleContents& log, bool is_of_attest) {
   const LogSeries& steps = log.steps();
-  if (steps.size() == 0) return fmt::format("no sample of the topic {}", steps.name());
+  if (steps.size() + steps.left_out() == 0) {
+    return fmt::format("no sample of the topic {}", steps.name());
+  }
+  if (steps.left_out() > steps.size()) {
+    return fmt::format("too few steps: {} of {} samples of the topic {} have no usable time",
+                       steps.left_out(), steps.size() + steps.left_out(), steps.name());
+  }
   if (is_of_attest) return "";
   const LogSeries& setpoint = *log.input(info_of(log.module()).setpoint_topic);
   if (setpoint.size() == 0) return fmt::format("no sample of the topic {}", setpoint.name());
@@ -146,16 +153,15 @@ void add_notes(const ModuleContents& log, std::vector<std::string>& notes) {
       add_missing(series, missing);
       for (std::string& note : missing) add_once(std::move(note), notes);
     }
-    if (series.left_out() > 0) {
-      add_once(fmt::format("{} samples of {} left out, because their timestamps do not increase",
-                           series.left_out(), series.name()),
-               notes);
-    }
-    if (series.without_time() > 0) {
-      add_once(fmt::format("{} samples of {} left out, because the topic has no timestamp",
-                           series.without_time(), series.name()),
-               notes);
-    }
+  }
+}
+
+void add_left_out(const ModuleContents& log, ulog::LeftOutSamples& samples) {
+  using ulog::LeftOutSamples;
+  for (const LogSeries& series : log.series()) {
+    samples.add(LeftOutSamples::absurd, series.name(), series.absurd());
+    samples.add(LeftOutSamples::not_later, series.name(), series.left_out() - series.absurd());
+    samples.add(LeftOutSamples::without_time, series.name(), series.without_time());
   }
 }
 
@@ -168,7 +174,9 @@ void add_origin(const LogContents& log, std::vector<std::string>& notes) {
 
 void add_losses(const LogContents& log, std::vector<std::string>& notes) {
   if (log.dropouts > 0) {
-    notes.push_back(fmt::format("the logger lost messages {} times", log.dropouts));
+    notes.push_back(log.dropouts == 1
+                        ? "the logger lost messages once"
+                        : fmt::format("the logger lost messages {} times", log.dropouts));
   }
   for (const std::string& damage : log.damage) notes.push_back("damaged: " + damage);
 }
@@ -226,6 +234,7 @@ class LogReading {
     for (ModuleContents* module : modules) {
       if (auto added = add(*module); !added) return tl::unexpected(added.error());
     }
+    for (std::string& note : left_out_.notes()) flight_.notes.push_back(std::move(note));
     note_assumed();
     add_losses(log_, flight_.notes);
     return std::move(flight_);
@@ -253,6 +262,7 @@ class LogReading {
                            : info_of(log.module()).is_of_cascade() ? LogRules::cascade
                                                                    : LogRules::controller;
     add_notes(log, flight_.notes);
+    add_left_out(log, left_out_);
     Sample first = first_sample(log, rules);
     std::vector<std::string> used;
     if (!assumed_.empty() || rules != LogRules::attest) used = assume(assumed_, log, first);
@@ -277,6 +287,7 @@ class LogReading {
   LogContents& log_;
   const std::vector<std::string>& assumed_;
   std::vector<std::string> used_;  // words that had an effect
+  ulog::LeftOutSamples left_out_;
   FlightLog flight_;
 };
 

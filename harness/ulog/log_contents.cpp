@@ -41,7 +41,11 @@ class ContentsReader {
       if (!more) return tl::unexpected(more.error());
       if (!*more) break;
       if (reader_.is_appended()) continue;
-      if (const auto* data = std::get_if<Data>(&message)) add(*data);
+      if (std::holds_alternative<Data>(message)) {
+        const auto fit = times_.check(reader_, message);
+        if (!fit) return tl::unexpected(fit.error());
+        add(std::get<Data>(message), *fit);
+      }
       if (const auto* value = std::get_if<KeyValue>(&message)) add(*value);
       if (std::holds_alternative<Dropout>(message)) ++log_.dropouts;
     }
@@ -67,11 +71,13 @@ class ContentsReader {
   }
 
   // A topic may belong to several modules, as an input of one and an output of another.
-  void add(const Data& data) {
+  void add(const Data& data, TimeFit fit) {
     const std::size_t index = data.subscription->index;
     if (index >= receivers_.size()) receivers_.resize(index + 1);
     if (!receivers_[index]) receivers_[index] = receivers_of(*data.subscription);
-    for (const Receiver& one : *receivers_[index]) one.module->count(*one.series, reader_, data);
+    for (const Receiver& one : *receivers_[index]) {
+      one.module->count(*one.series, reader_, data, fit);
+    }
   }
 
   // At the first call the name of the system is known, because it comes before the first data.
@@ -119,6 +125,7 @@ class ContentsReader {
   }
 
   Reader& reader_;
+  TimeCheck times_;
   LogContents log_;
   bool knows_system_ = false;
   std::vector<std::optional<std::vector<Receiver>>> receivers_;  // by subscription
@@ -141,7 +148,8 @@ bool ModuleContents::has_outputs() const {
   });
 }
 
-void ModuleContents::count(LogSeries& series, const Reader& reader, const Data& data) {
+void ModuleContents::count(LogSeries& series, const Reader& reader, const Data& data, TimeFit fit) {
+  if (!takes(series, fit)) return series.leave_out_absurd();
   if (!series.count(reader, data)) return;
   const std::uint64_t time = series.newest_time();
   if (&series == &steps()) {
@@ -207,17 +215,25 @@ Result<void> SampleReader::read_message() {
   const auto more = reader_.next(message);
   if (!more) return tl::unexpected(more.error());
   has_ended_ = !*more;
-  const auto* const data = std::get_if<Data>(&message);
-  if (has_ended_ || data == nullptr || reader_.is_appended()) return {};
-  const std::size_t index = data->subscription->index;
+  if (has_ended_ || !std::holds_alternative<Data>(message) || reader_.is_appended()) return {};
+  const auto fit = times_.check(reader_, message);
+  if (!fit) return tl::unexpected(fit.error());
+  const Data& data = std::get<Data>(message);
+  const std::size_t index = data.subscription->index;
   if (index >= receivers_.size()) receivers_.resize(index + 1);
   if (!receivers_[index]) {
     receivers_[index].emplace();
     for (LogSeries& series : log_->series()) {
-      if (series.accepts(*data->subscription)) receivers_[index]->push_back(&series);
+      if (series.accepts(*data.subscription)) receivers_[index]->push_back(&series);
     }
   }
-  for (LogSeries* series : *receivers_[index]) series->add(reader_, *data);
+  for (LogSeries* series : *receivers_[index]) {
+    if (log_->takes(*series, *fit)) {
+      series->add(reader_, data);
+    } else {
+      series->leave_out_absurd();
+    }
+  }
   return {};
 }
 

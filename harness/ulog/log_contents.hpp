@@ -13,6 +13,7 @@
 #include "harness/trace/trace.hpp"
 #include "harness/ulog/log_series.hpp"
 #include "harness/ulog/step_gaps.hpp"
+#include "harness/ulog/time_check.hpp"
 
 namespace attest::ulog {
 
@@ -47,9 +48,14 @@ class ModuleContents {
   // Whether an output topic has samples and at least one known field.
   bool has_outputs() const;
 
+  // Whether a sample of the series is taken if its time fits like this. REQUIRES: `series` is one
+  // of series().
+  bool takes(const LogSeries& series, TimeFit fit) const {
+    return fit == TimeFit::plausible || (fit == TimeFit::too_early && &series != &steps());
+  }
   // Counts the last sample that `reader` read. REQUIRES: `series` is one of series(), and accepts
   // it.
-  void count(LogSeries& series, const Reader& reader, const Data& data);
+  void count(LogSeries& series, const Reader& reader, const Data& data, TimeFit fit);
   // `fastest_hz`: as for GapCounts::gaps().
   StepGaps step_gaps(std::optional<double> fastest_hz) const {
     return gap_counts_.gaps(fastest_hz);
@@ -104,6 +110,7 @@ class SampleReader {
   bool has_all(std::uint64_t time_us) const;
 
   Reader reader_;
+  TimeCheck times_;
   ModuleContents* log_;
   bool has_ended_ = false;
   std::vector<std::optional<std::vector<LogSeries*>>> receivers_;  // by subscription

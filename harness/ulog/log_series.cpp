@@ -136,7 +136,7 @@ void LogSeries::restart() {
   times_.clear();
   sample_times_.clear();
   values_.clear();
-  size_ = left_out_ = without_time_ = forgotten_ = 0;
+  size_ = left_out_ = absurd_ = without_time_ = forgotten_ = 0;
   newest_ = 0;
   newest_sample_time_.reset();
   has_sample_times_ = true;

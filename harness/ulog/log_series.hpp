@@ -64,6 +64,8 @@ class LogSeries {
   bool count(const Reader& reader, const Data& data);
   // Counts a sample, and keeps it unless it is left out.
   void add(const Reader& reader, const Data& data);
+  // Counts a sample that is left out because its time is absurd.
+  void leave_out_absurd() { ++absurd_, ++left_out_; }
   // Ends the keeping of all samples before `row`. REQUIRES: row <= size().
   void forget_before(std::size_t row);
   // Forgets and counts no sample, so that the log can be read again.
@@ -72,6 +74,7 @@ class LogSeries {
   // The samples so far. They are counted from 0 on, also when earlier ones are forgotten.
   std::size_t size() const { return size_; }
   std::size_t left_out() const { return left_out_; }
+  std::size_t absurd() const { return absurd_; }  // of left_out()
   // Samples left out because the topic has no timestamp. Not counted in left_out().
   std::size_t without_time() const { return without_time_; }
   std::uint64_t newest_time() const { return newest_; }  // us; 0 without a sample
@@ -114,7 +117,7 @@ class LogSeries {
   std::optional<std::size_t> located_;  // index of the subscription of these places
   std::optional<Column> time_, sample_time_;
   std::vector<Place> places_;  // of the topic's fields
-  std::size_t size_ = 0, left_out_ = 0, without_time_ = 0;
+  std::size_t size_ = 0, left_out_ = 0, absurd_ = 0, without_time_ = 0;
   std::uint64_t newest_ = 0;
   std::optional<std::uint64_t> newest_sample_time_;
   bool has_sample_times_ = true;

@@ -154,7 +154,7 @@ load common
   run "$ATTEST" compare a.csv a.csv --by-time --shift=4611686018427387903
   [ "$status" -eq 2 ]
   has "no timestamp in common"
-  has "1 rows left out, because their timestamps are beyond"
+  has "1 row left out, because the time is beyond"
 }
 
 @test "a trace of a unit has the signals of its log" {

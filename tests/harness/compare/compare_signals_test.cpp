@@ -179,7 +179,7 @@ TEST(TimedSignals, CsvOfAnyOriginNeedsATimeOnly) {
   EXPECT_EQ(read->all[1].name, "rotor_speed.value[0]");
   EXPECT_EQ(read->all[2].name, "vehicle_rates_setpoint[1].roll");
   EXPECT_THAT(read->all[0].values, ElementsAre(4, 10));
-  EXPECT_THAT(read->notes, ElementsAre(HasSubstr("1 rows left out")));
+  EXPECT_THAT(read->notes, ElementsAre(HasSubstr("1 row left out")));
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ TEST_F(TimedSignalsOfLog, ATopicMayHaveTheNameOfAnInstanceOfAnother) {
   const TimedSignals signals = read(log);
   EXPECT_THAT(values(signals, "pose[1].x"), ElementsAre(7));
   EXPECT_THAT(values(signals, "pose[1].y[99]"), ElementsAre(0));
-  EXPECT_THAT(signals.notes, ElementsAre("1 signals left out, because another one has the same "
+  EXPECT_THAT(signals.notes, ElementsAre("1 signal left out, because another one has the same "
                                          "name; the first: pose[1].x"));
 }
 
@@ -74,9 +74,10 @@ TEST_F(TimedSignalsOfLog, ATopicWithoutTimestampIsCounted) {
   log.data(2, raw(std::uint64_t{1}, std::uint64_t{2}, 1.0f));
   const TimedSignals signals = read(log);
   EXPECT_EQ(signals.all.size(), 1u);
-  EXPECT_THAT(signals.notes,
-              ElementsAre("2 samples of b left out, because the topic has no timestamp",
-                          "1 samples of c left out, because the topic has no timestamp"));
+  EXPECT_THAT(
+      signals.notes,
+      ElementsAre("3 samples of 2 topics left out, because the topic has no timestamp: 2 of b, "
+                  "1 of c"));
 }
 
 TEST_F(TimedSignalsOfLog, ExtremeTimesAreCountedAndNeverOverflow) {
@@ -88,8 +89,8 @@ TEST_F(TimedSignalsOfLog, ExtremeTimesAreCountedAndNeverOverflow) {
   }
   const TimedSignals signals = read(log);
   EXPECT_THAT(signals.find("a.x")->times_us, ElementsAre(0, latest));
-  EXPECT_THAT(signals.notes, ElementsAre(HasSubstr("2 samples of a left out, because their "
-                                                   "timestamps are beyond")));
+  EXPECT_THAT(signals.notes, ElementsAre(HasSubstr("2 samples of a left out, because the time is "
+                                                   "beyond")));
   for (const std::int64_t shift : {-latest_us, latest_us}) {
     const auto found = compare_signals(signals, signals, Tolerances(), 0, shift);
     EXPECT_EQ(found.compared(), 1u);
@@ -113,8 +114,7 @@ TEST(TimedSignals, RowsOfCsvWithExtremeTimesAreCounted) {
       signals_of_csv(directory.write("a.csv", "timestamp,x\n1,2\n18446744073709551615,3\n"));
   ASSERT_TRUE(read);
   EXPECT_THAT(read->all[0].values, ElementsAre(2));
-  EXPECT_THAT(read->notes, ElementsAre(HasSubstr("1 rows left out, because their timestamps are "
-                                                 "beyond")));
+  EXPECT_THAT(read->notes, ElementsAre(HasSubstr("1 row left out, because the time is beyond")));
 }
 
 }  // namespace

@@ -298,6 +298,46 @@ TEST_F(FlightLogFile, TimestampsThatDoNotIncreaseAreLeftOutAndCounted) {
   EXPECT_FALSE(log.units[0].has_every_step);
 }
 
+TEST_F(FlightLogFile, AnAbsurdTimeRemovesOneSampleOfItsTopic) {
+  define({state, setpoint, rates});
+  add_setpoint(1000, 0.75f);  // an event, long before the log
+  for (std::uint64_t tick = 0; tick < 60; ++tick) {
+    const std::uint64_t time = 100'000'000 + 4000 * tick;
+    const std::uint64_t early = tick == 0 ? time - 5'000'000 : 0;
+    const std::uint64_t late = tick == 20 || tick == 40 ? std::uint64_t{1} << (10 + tick) : 0;
+    add_state(time - early + late, static_cast<float>(tick));
+    add_rates(time + 50 + (tick == 30 ? std::uint64_t{1} << 63 : 0), static_cast<float>(tick));
+  }
+  const FlightLog log = read();
+  const LoggedUnit& unit = log.units[0];
+  ASSERT_EQ(unit.trace.samples.size(), 57u);
+  EXPECT_EQ(unit.trace.samples[0].in.control_state.roll_rate, 1);
+  EXPECT_EQ(unit.trace.samples[0].in.vehicle_attitude_setpoint.thrust, 0.75f);
+  EXPECT_EQ(unit.trace.samples[19].in.control_state.roll_rate, 21);
+  EXPECT_EQ(unit.outputs[0].paired, 56u);
+  EXPECT_FALSE(unit.has_every_step);
+  EXPECT_THAT(log.notes, Contains("4 samples of 2 topics left out, because the time does not fit "
+                                  "the samples around it: 3 of control_state, 1 of "
+                                  "vehicle_rates_setpoint"));
+}
+
+TEST_F(FlightLogFile, AJumpOfTheClockIsOneNote) {
+  start();
+  add_setpoint(900);
+  add_state(900);
+  add_rates(900, 1);
+  EXPECT_THAT(read().notes,
+              Contains("3 samples of 3 topics left out, because the timestamps do not "
+                       "increase: 1 of control_state, 1 of vehicle_attitude_setpoint, "
+                       "1 of vehicle_rates_setpoint"));
+}
+
+TEST_F(FlightLogFile, WithoutMostOfItsStepsAUnitIsNotReplayed) {
+  start();
+  for (std::uint64_t tick = 0; tick < 3; ++tick) add_state(900 + tick);
+  EXPECT_THAT(error(), HasSubstr("3 of 4 samples of the topic control_state have no usable time"));
+}
+
 TEST_F(FlightLogFile, LostMessagesMeanMissingSteps) {
   start();
   ASSERT_TRUE(writer_.dropout(20));
