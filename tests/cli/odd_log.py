@@ -1,7 +1,7 @@
 """usage: odd_log.py LOG OUT [--flip TOPIC=N:BIT]... [--info KEY=TEXT]... [--by-px4]
 
-Copies a ULog with what real logs have. --flip: in the time of sample N (from 0) of a topic, this bit
-is wrong. --info: this info message comes first; the key has its type, as in "char[3] x".
+Copies a ULog with what real logs have. --flip: in the time of sample N (from 0) of a topic, this
+bit is wrong. --info: this info message comes first; the key has its type, as in "char[3] x".
 --by-px4: another system than attest wrote it, so it is judged as the log of a flight."""
 
 import argparse
