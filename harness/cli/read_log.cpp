@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -38,31 +39,69 @@ std::string profile_of(const FlightLog& log) {
   return "";
 }
 
+// The number of minor releases between the profile and the release, as v1.14 to v1.16 are two.
+int distance(std::string_view profile, const ulog::Release& release) {
+  int major = 0, minor = 0;
+  std::sscanf(std::string(profile).c_str(), "px4-v%d.%d", &major, &minor);
+  return std::abs(100 * (release.major - major) + release.minor - minor);
+}
+
+// The newest of the nearest ones.
+std::string_view nearest_profile(const FlightLog& log) {
+  const auto names = profiles_for(log);
+  return *std::min_element(names.begin(), names.end(), [&](const auto& a, const auto& b) {
+    return distance(a, *log.release) < distance(b, *log.release);
+  });
+}
+
+// What is uncertain about the law of the log's release, of which there is a profile.
+void add_doubts(FlightLog& log) {
+  if (!log.release->is_final()) {
+    const std::string branch = log.branch.empty() ? "" : " of the branch " + log.branch;
+    log.notes.push_back(fmt::format(
+        "PX4 {} is {} {} build{}, whose law may differ from {}", log.release->to_string(),
+        log.release->kind() == "alpha" || log.release->kind() == "rc" ? "an" : "a",
+        log.release->kind(), branch, log.profile));
+  }
+  const std::string_view as_of = find_profile(log.profile)->as_of;
+  if (!as_of.empty()) {
+    log.notes.push_back(
+        fmt::format("{} is the law of {}; the final release may differ", log.profile, as_of));
+  }
+}
+
+// A log of the controller without a profile of its own gets the nearest.
+void take_nearest(FlightLog& log) {
+  log.profile = log.release ? nearest_profile(log) : default_profile;
+  log.notes.push_back(
+      log.release
+          ? fmt::format("PX4 {} wrote the log, and attest has no profile of this release; the "
+                        "profile is taken to be the nearest, {}, whose law may differ (--profile)",
+                        log.release->to_string(), log.profile)
+          : fmt::format("the profile is taken to be {}, because the log does not say which release "
+                        "of PX4 wrote it (--profile)",
+                        log.profile));
+}
+
 void choose_profile(FlightLog& log) {
   if (!log.profile.empty()) return;
   log.profile = profile_of(log);
   if (!log.profile.empty()) {
     log.notes.push_back(fmt::format("the profile is {}, because PX4 {} wrote the log (--profile)",
                                     log.profile, log.release->to_string()));
-    const std::string_view as_of = find_profile(log.profile)->as_of;
-    if (!as_of.empty()) {
-      log.notes.push_back(
-          fmt::format("{} is the law of {}; the final release may differ", log.profile, as_of));
-    }
-    return;
+    return add_doubts(log);
   }
-  if (log.units.front().module == Module::mc_att_control) {
-    log.profile = default_profile;
-    log.notes.push_back(fmt::format("the profile is taken to be {} (--profile)", default_profile));
-    return;
-  }
-  log.no_profile = fmt::format("{}; name the law with --profile, one of {}",
-                               log.release ? fmt::format("was written by PX4 {}, whose law attest "
-                                                         "does not have",
-                                                         log.release->to_string())
-                                           : "does not say which release of PX4 wrote it "
-                                             "(ver_sw_release)",
-                               fmt::join(profiles_for(log), ", "));
+  if (log.units.front().module == Module::mc_att_control) return take_nearest(log);
+  const std::string names = fmt::format("{}", fmt::join(profiles_for(log), ", "));
+  log.no_profile = log.release
+                       ? fmt::format(
+                             "was written by PX4 {}, whose law attest does not have; name the "
+                             "law with --profile, one of {} (the nearest is {})",
+                             log.release->to_string(), names, nearest_profile(log))
+                       : fmt::format(
+                             "does not say which release of PX4 wrote it (ver_sw_release); name "
+                             "the law with --profile, one of {}",
+                             names);
 }
 
 // A profile that attest does not know is accepted, because a port may know it.

@@ -168,8 +168,9 @@ void add_left_out(const ModuleContents& log, ulog::LeftOutSamples& samples) {
 void add_origin(const LogContents& log, std::vector<std::string>& notes) {
   if (log.system.empty()) return;
   const std::string release = log.release ? " " + log.release->to_string() : "";
-  notes.push_back(fmt::format("logged by {}{}{}", log.system, release,
-                              log.firmware.empty() ? "" : " " + log.firmware));
+  notes.push_back(fmt::format("logged by {}{}{}{}", log.system, release,
+                              log.firmware.empty() ? "" : " " + log.firmware,
+                              log.branch.empty() ? "" : ", branch " + log.branch));
 }
 
 void add_losses(const LogContents& log, std::vector<std::string>& notes) {
@@ -229,6 +230,7 @@ class LogReading {
     }
     flight_.is_of_attest = log_.is_of_attest();
     flight_.release = log_.release;
+    flight_.branch = log_.branch;
     flight_.profile = log_.source.substr(0, std::min(log_.source.find('/'), log_.source.size()));
     add_origin(log_, flight_.notes);
     for (ModuleContents* module : modules) {

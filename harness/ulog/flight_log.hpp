@@ -105,6 +105,7 @@ struct FlightLog {
   std::string profile;     // in a log of attest, that of the case; else empty
   std::string no_profile;  // for the reader of `profile`: why there is none that attest knows
   std::optional<ulog::Release> release;  // of the PX4 that wrote it, if the log says so
+  std::string branch;                    // of its source; empty: the log does not say it
   bool is_of_attest = false;  // if true, the log has all that the unit received at each step
   // Remarks for the user, one line each: for example on damage, missing fields and assumptions.
   std::vector<std::string> notes;

@@ -14,10 +14,10 @@ std::string text_of(const KeyValue& value) {
   return std::string(printable_part(value.bytes.substr(0, end)));
 }
 
-// For example 0x010e03ff: a byte each for major, minor and patch, then the kind of release.
+// For example 0x010e03ff: a byte each for major, minor and patch, then the type.
 Release release_of(std::uint32_t version) {
   const auto byte = [&](int shift) { return static_cast<int>(version >> shift & 0xffU); };
-  return {byte(24), byte(16), byte(8)};
+  return {byte(24), byte(16), byte(8), byte(0)};
 }
 
 // A series that takes the samples of a subscription.
@@ -64,6 +64,7 @@ class ContentsReader {
     } else if (value.kind == 'I' && value.type == Type::character) {
       if (value.name == "sys_name") log_.system = text_of(value);
       if (value.name == "ver_sw") log_.firmware = text_of(value);
+      if (value.name == "ver_sw_branch") log_.branch = text_of(value);
       if (value.name == "attest_source") log_.source = text_of(value);
     } else if (value.kind == 'I' && value.name == "ver_sw_release" && value.type == Type::u32) {
       log_.release = release_of(load_as<std::uint32_t>(value.type, value.bytes.data()));
@@ -133,7 +134,15 @@ class ContentsReader {
 
 }  // namespace
 
-std::string Release::to_string() const { return fmt::format("v{}.{}.{}", major, minor, patch); }
+std::string_view Release::kind() const {
+  constexpr std::string_view kinds[] = {"dev", "alpha", "beta", "rc"};
+  return is_final() ? "release" : kinds[type / 64];
+}
+
+std::string Release::to_string() const {
+  return fmt::format("v{}.{}.{}{}{}", major, minor, patch, is_final() ? "" : "-",
+                     is_final() ? "" : kind());
+}
 
 ModuleContents::ModuleContents(Module module) : module_(module) {
   for (LogTopic& topic : log_topics(module)) series_.emplace_back(std::move(topic));

@@ -17,11 +17,16 @@
 
 namespace attest::ulog {
 
-// A release of PX4: 1, 14, 3 is v1.14.3.
+// A version of PX4: 1, 14, 3 is v1.14.3.
 struct Release {
   int major = 0, minor = 0, patch = 0;
+  // What kind of build it is: 0 to 63 dev, 64 to 127 alpha, 128 to 191 beta, 192 to 254 rc, 255 a
+  // release.
+  int type = 255;
 
-  std::string to_string() const;  // "v1.14.3"
+  bool is_final() const { return type == 255; }
+  std::string_view kind() const;  // "dev"; "release" if it is final
+  std::string to_string() const;  // "v1.14.3", "v1.15.0-dev"
 };
 
 // How far the order of the samples in the file is from that of their times.
@@ -78,6 +83,7 @@ class ModuleContents {
 struct LogContents {
   std::vector<ModuleContents> modules;   // controller, attitude unit, rate unit
   std::string system, firmware, source;  // sys_name, ver_sw, attest_source
+  std::string branch;                    // ver_sw_branch, the Git branch of the firmware
   std::optional<Release> release;        // ver_sw_release
   std::size_t dropouts = 0;              // times that the logger lost messages
   std::vector<std::string> damage;       // one line each

@@ -1,7 +1,8 @@
-"""usage: odd_log.py LOG OUT [--flip TOPIC=N:BIT]... [--info KEY=TEXT]... [--by-px4]
+"""usage: odd_log.py LOG OUT [--flip TOPIC=N:BIT]... [--info KEY=VALUE]... [--by-px4]
 
 Copies a ULog with what real logs have. --flip: in the time of sample N (from 0) of a topic, this
-bit is wrong. --info: this info message comes first; the key has its type, as in "char[3] x".
+bit is wrong. --info: this info message comes first; the key has its type, as in
+"char[3] x", and the value is a text, or bytes as in hex:00ff.
 --by-px4: another system than attest wrote it, so it is judged as the log of a flight."""
 
 import argparse
@@ -24,8 +25,10 @@ def message(kind, body):
 
 
 def info(text):
-    key, value = (part.encode() for part in text.split("=", 1))
-    return message("I", bytes([len(key)]) + key + value)
+    key, value = text.split("=", 1)
+    hexadecimal = value.startswith("hex:")
+    value = bytes.fromhex(value[4:]) if hexadecimal else value.encode()
+    return message("I", bytes([len(key)]) + key.encode() + value)
 
 
 def flips(options):

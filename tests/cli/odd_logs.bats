@@ -65,3 +65,34 @@ flight() {
   has "1 sample of control_state left out, because the time does not fit"
   has "0 in the first, "
 }
+
+@test "the build that wrote a log is shown, and a build that is no release is no release" {
+  local kind
+  for kind in 3f:dev 40:alpha 80:beta c0:rc; do
+    flight build.ulg --info "uint32_t ver_sw_release=hex:${kind%:*}050501" \
+      --info "char[4] ver_sw_branch=main"
+    run "$ATTEST" replay build.ulg
+    [ "$status" -eq 0 ]
+    has "logged by anyone v1.5.5-${kind#*:}, branch main"
+    has "the profile is px4-v1.5.5, because PX4 v1.5.5-${kind#*:} wrote the log"
+    has " ${kind#*:} build of the branch main, whose law may differ from px4-v1.5.5"
+  done
+  flight build.ulg --info "uint32_t ver_sw_release=hex:ff050501"
+  run "$ATTEST" replay build.ulg
+  has "because PX4 v1.5.5 wrote the log"
+  lacks "may differ"
+}
+
+@test "a release without a profile is named, with the nearest one" {
+  local pair
+  for pair in 0600:1.6.0:1.5.5 0c00:1.12.0:1.5.5 0200:1.2.0:1.3.4; do
+    IFS=: read -r bytes release profile <<<"$pair"
+    flight release.ulg --info "uint32_t ver_sw_release=hex:ff${bytes:2}${bytes:0:2}01"
+    run "$ATTEST" replay release.ulg
+    has "PX4 v$release wrote the log, and attest has no profile of this release"
+    has "the nearest, px4-v$profile, whose law may differ (--profile)"
+  done
+  flight release.ulg
+  run "$ATTEST" replay release.ulg
+  has "is taken to be px4-v1.5.5, because the log does not say which release of PX4 wrote it"
+}

@@ -328,6 +328,7 @@ WILD
   run "$ATTEST" replay old.ulg
   [ "$status" -eq 2 ]
   has "was written by PX4 v1.13.2, whose law attest does not have; name the law with --profile"
+  has "(the nearest is px4-v1.14.4)"
   flight unknown.ulg --release 0
   run "$ATTEST" replay unknown.ulg
   [ "$status" -eq 2 ]
@@ -445,6 +446,7 @@ CHECK
     [ "$status" -eq 1 ]
     has "skip        strange.ulg: attitude unit  no profile"
     has "was written by PX4 v1.13.2, whose law attest does not have; name the law with --profile"
+  has "(the nearest is px4-v1.14.4)"
     has "FAIL 2 of 6 traces and units agree, 2 not compared"
     grep -oE "^[a-z]+ +[a-z]+.ulg: [a-z]+" <<<"$output" | tr -s ' ' >order.txt
     [ "$(cat order.txt)" = "pass sparse.ulg: attitude
