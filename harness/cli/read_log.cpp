@@ -105,12 +105,12 @@ void choose_profile(FlightLog& log) {
 }
 
 // A profile that attest does not know is accepted, because a port may know it.
-Result<void> check_profile(const std::string& file, const FlightLog& log) {
+void check_profile(FlightLog& log) {
   const ProfileInfo* const known = find_profile(log.profile);
-  if (known == nullptr || has_units_of(log, *known)) return {};
-  return fail_at(file, fmt::format("is of the {}, which {} does not have; --profile is one of {}",
-                                   info_of(log.units.front().module).title, log.profile,
-                                   fmt::join(profiles_for(log), ", ")));
+  if (known == nullptr || has_units_of(log, *known)) return;
+  log.no_profile = fmt::format("is of the {}, which {} does not have; --profile is one of {}",
+                               info_of(log.units.front().module).title, log.profile,
+                               fmt::join(profiles_for(log), ", "));
 }
 
 }  // namespace
@@ -121,14 +121,15 @@ Result<FlightLog> read_any_log(const std::string& file, const std::vector<std::s
   if (!log) return log;
   if (!profile.empty()) log->profile = profile;
   choose_profile(*log);
-  if (!log->no_profile.empty()) return log;
-  if (auto checked = check_profile(file, *log); !checked) return tl::unexpected(checked.error());
+  check_profile(*log);
+  if (log->units.size() > 1 && !log->too_little.empty()) log->notes.push_back(log->too_little);
   return log;
 }
 
 Result<FlightLog> read_log(const std::string& file, const std::vector<std::string>& assumed,
                            const std::string& profile, bool whole) {
   auto log = read_any_log(file, assumed, profile, whole);
+  if (log && !log->too_little.empty()) return fail_at(file, log->too_little);
   if (log && !log->no_profile.empty()) return fail_at(file, log->no_profile);
   return log;
 }

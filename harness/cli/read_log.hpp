@@ -18,7 +18,8 @@ namespace attest::cli {
 Result<FlightLog> read_log(const std::string& file, const std::vector<std::string>& assumed,
                            const std::string& profile, bool whole = true);
 
-// The same, but a log without a profile is no error: see FlightLog::no_profile.
+// The same, but a log that cannot be replayed is no error: see FlightLog::too_little and
+// no_profile, which also says that `profile` does not have the units of the log.
 Result<FlightLog> read_any_log(const std::string& file, const std::vector<std::string>& assumed,
                                const std::string& profile, bool whole);
 

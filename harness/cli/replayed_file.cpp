@@ -83,7 +83,7 @@ class FileReplay {
     found_.notes = log->notes;
     const LoggedUnit& first = log->units.front();
     // A log that attest wrote has the outputs of all steps, so it is judged like a trace.
-    if (log->is_of_attest && first.has_every_step) {
+    if (log->is_of_attest && first.has_every_step && log->too_little.empty()) {
       Trace parameters;
       parameters.parameters = first.trace.parameters;
       for (const ParameterChange& change : parameters_of(options_, *log, first)) {
@@ -105,10 +105,10 @@ class FileReplay {
 
   Result<void> judge_unit(const FlightLog& log, const LoggedUnit& unit,
                           std::vector<LogResult>& results) {
-    auto evaluated = log.no_profile.empty()
-                         ? evaluate_log(unit, log.profile, host_, options_.log_limits,
-                                        parameters_of(options_, log, unit))
-                         : skipped(unit, log.no_profile);
+    const std::string& why_not = log.too_little.empty() ? log.no_profile : unit.not_judged;
+    auto evaluated = why_not.empty() ? evaluate_log(unit, log.profile, host_, options_.log_limits,
+                                                    parameters_of(options_, log, unit))
+                                     : skipped(unit, why_not);
     if (!evaluated) return tl::unexpected(evaluated.error());
     const LogResult& found = results.emplace_back(*std::move(evaluated));
     keep(found.result.verdict, json_of_unit(log, unit, found, options_.log_limits));

@@ -62,7 +62,7 @@ constexpr std::array formats{
 std::string first_bytes_of(const std::filesystem::path& path) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(path, unknown)) return "";
-  std::array<char, 16> begin{};
+  std::array<char, 64> begin{};
   std::ifstream file(path, std::ios::binary);
   file.read(begin.data(), begin.size());
   return {begin.data(), static_cast<std::size_t>(file.gcount())};
@@ -84,7 +84,8 @@ bool is_written(const FileFormat& format) { return format.write != nullptr; }
 std::span<const FileFormat> file_formats() { return formats; }
 
 const FileFormat& format_for(const std::filesystem::path& path) {
-  const std::string ending = path.extension().string();
+  std::string ending = path.extension().string();
+  for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   const auto found = std::find_if(formats.begin(), formats.end(), [&](const FileFormat& format) {
     return ending.size() > 1 &&
            (ending.substr(1) == format.name || ending.substr(1) == format.other_ending);
@@ -98,6 +99,12 @@ const FileFormat& format_of(const std::filesystem::path& path) {
     return format.begins != nullptr && format.begins(bytes);
   });
   return found == formats.end() ? format_for(path) : *found;
+}
+
+Result<void> check_is_no_pointer(const std::filesystem::path& path) {
+  if (!first_bytes_of(path).starts_with("version https://git-lfs.github.com/spec/v1")) return {};
+  return fail_at(path.string(),
+                 "is a pointer of Git LFS, not the file itself; fetch it with `git lfs pull`");
 }
 
 std::string written_endings() {

@@ -43,7 +43,7 @@ struct FileFormat {
 // The first one is CSV.
 std::span<const FileFormat> file_formats();
 
-// The format by which a file of that name is written: that of the ending, or else CSV.
+// The format by which a file of that name is written: that of the ending, in any case, or else CSV.
 const FileFormat& format_for(const std::filesystem::path& path);
 // The format of a file to read: that of its first bytes. If no format begins so, and for a pipe,
 // whose bytes can be read only once: same as format_for().
@@ -59,11 +59,15 @@ Result<const FileFormat*> parse_table_format(std::string_view name);
 tl::unexpected<Error> wrong_format(const std::filesystem::path& path, const FileFormat& format,
                                    bool (*can)(const FileFormat& format));
 
+// Errors: the file is the pointer that Git has in place of a large file.
+Result<void> check_is_no_pointer(const std::filesystem::path& path);
+
 // Calls a function of the file's format: read_as<&FileFormat::open>(path, TraceNeed::outputs).
-// Errors: those of the function; the format does not have it.
+// Errors: those of the function; the format does not have it; those of check_is_no_pointer().
 template <auto function, typename... Arguments>
 auto read_as(const std::filesystem::path& path, const Arguments&... arguments)
     -> std::invoke_result_t<decltype(FileFormat{}.*function), decltype(path), const Arguments&...> {
+  if (auto checked = check_is_no_pointer(path); !checked) return tl::unexpected(checked.error());
   const FileFormat& format = format_of(path);
   if (format.*function != nullptr) return (format.*function)(path, arguments...);
   return wrong_format(path, format, [](const FileFormat& one) { return one.*function != nullptr; });

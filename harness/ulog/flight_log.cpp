@@ -65,7 +65,7 @@ std::string lacking(const ModuleContents& log, bool is_of_attest) {
   for (const LogSeries* series : {&steps, &setpoint}) {
     for (const LogField* missing : series->missing_fields()) {
       if (is_optional(missing->name)) continue;
-      return fmt::format("the topic {} has no field {}; is the log of another version of PX4?",
+      return fmt::format("a topic {} without the field {}; is the log of another version of PX4?",
                          series->name(), missing->name);
     }
   }
@@ -84,19 +84,18 @@ std::vector<ModuleContents*> candidates(LogContents& log) {
   return {&attitude, &rate};
 }
 
-// The error for a log from which no unit can be replayed.
-Error nothing_in(const std::filesystem::path& path, const std::vector<ModuleContents*>& modules,
-                 bool is_of_attest) {
-  if (modules.size() == 1) return {lacking(*modules.front(), is_of_attest), path.string()};
+// Why no unit of a log can be replayed.
+std::string nothing_in(const std::vector<ModuleContents*>& modules, bool is_of_attest) {
+  if (modules.size() == 1) return "has " + lacking(*modules.front(), is_of_attest);
   std::vector<std::string> reasons;
   for (const ModuleContents* log : modules) {
     reasons.push_back(
         fmt::format("for the {}: {}", info_of(log->module()).title, lacking(*log, is_of_attest)));
   }
-  return {fmt::format("has too little to replay: for the controller of PX4 v1.5.5 and v1.3.4: no "
-                      "sample of the topic control_state; {}",
-                      fmt::join(reasons, "; ")),
-          path.string()};
+  return fmt::format(
+      "has too little to replay: for the controller of PX4 v1.5.5 and v1.3.4: no "
+      "sample of the topic control_state; {}",
+      fmt::join(reasons, "; "));
 }
 
 // The sample before the first step. A unit of v1.14 to v1.18 takes some flags as true before the
@@ -221,11 +220,16 @@ class LogReading {
     const auto is_lacking = [&](const ModuleContents* one) {
       return !lacking(*one, log_.is_of_attest()).empty();
     };
+    if (!log_.has_data) {
+      return fail_at(path_.string(),
+                     "has no sample of any topic, as if it was cut off in its "
+                     "definitions; copy the log again");
+    }
     if (std::all_of(modules.begin(), modules.end(), is_lacking)) {
-      return tl::unexpected(nothing_in(path_, modules, log_.is_of_attest()));
+      flight_.too_little = nothing_in(modules, log_.is_of_attest());
     }
     const std::vector<const ModuleContents*> known(modules.begin(), modules.end());
-    if (auto checked = check_assumed(assumed_, known); !checked) {
+    if (auto checked = check_assumed(assumed_, known); flight_.too_little.empty() && !checked) {
       return fail_at(path_.string(), checked.error().message);
     }
     flight_.is_of_attest = log_.is_of_attest();

@@ -100,8 +100,9 @@ struct LoggedUnit {
 
 struct FlightLog {
   // One: the controller, or the unit of a log that attest wrote. Two: the attitude unit and the
-  // rate unit. At least one has ticks.
+  // rate unit.
   std::vector<LoggedUnit> units;
+  std::string too_little;  // why no unit has ticks; empty: at least one has
   std::string profile;     // in a log of attest, that of the case; else empty
   std::string no_profile;  // for the reader of `profile`: why there is none that attest knows
   std::optional<ulog::Release> release;  // of the PX4 that wrote it, if the log says so
@@ -130,7 +131,7 @@ struct FlightLog {
 //
 // `assumed` has some of assumption_words(). If it is empty, the default words are used; for a log
 // of attest, none. The words apply to topics without a sample in the log. Errors: the file cannot
-// be read or is not a ULog; it has too little for every unit; those of check_assumed().
+// be read or is not a ULog; it has no data; those of check_assumed().
 //
 // Not `whole`: with LoggedUnit::ticks, which read the file again. They keep the samples of a short
 // time, so their memory does not grow with the log; it grows with the time by which samples are out

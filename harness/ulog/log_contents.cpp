@@ -44,6 +44,7 @@ class ContentsReader {
       if (std::holds_alternative<Data>(message)) {
         const auto fit = times_.check(reader_, message);
         if (!fit) return tl::unexpected(fit.error());
+        log_.has_data = true;
         add(std::get<Data>(message), *fit);
       }
       if (const auto* value = std::get_if<KeyValue>(&message)) add(*value);

@@ -85,6 +85,7 @@ struct LogContents {
   std::string system, firmware, source;  // sys_name, ver_sw, attest_source
   std::string branch;                    // ver_sw_branch, the Git branch of the firmware
   std::optional<Release> release;        // ver_sw_release
+  bool has_data = false;                 // of any topic
   std::size_t dropouts = 0;              // times that the logger lost messages
   std::vector<std::string> damage;       // one line each
   bool may_lack_samples = false;         // because of the damage

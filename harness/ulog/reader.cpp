@@ -41,6 +41,12 @@ std::size_t size_of_message(std::string_view bytes) {
              : 0;
 }
 
+bool is_text(std::string_view bytes) {
+  return std::all_of(bytes.begin(), bytes.end(), [](char c) {
+    return (c >= ' ' && c <= '~') || c == '\n' || c == '\r' || c == '\t';
+  });
+}
+
 }  // namespace
 
 Result<Reader> Reader::open(const std::filesystem::path& path) {
@@ -75,8 +81,10 @@ Result<void> Reader::read_header() {
   end_ = file_size_;
   std::string_view bytes = bytes_at(0, header_bytes + head_bytes + flag_bits_bytes);
   if (read_failure_) return tl::unexpected(*read_failure_);
-  if (bytes.empty() || bytes.substr(0, 7) != file_magic.substr(0, bytes.size())) {
-    return fail_at(file_, "not a ULog; name a .ulg file of PX4's logger");
+  if (bytes.empty()) return fail_at(file_, "is empty; copy the log again");
+  if (bytes.substr(0, 7) != file_magic.substr(0, bytes.size())) {
+    return fail_at(file_, fmt::format("{}not a ULog; name a .ulg file of PX4's logger",
+                                      is_text(bytes) ? "is a text, and " : ""));
   }
   if (bytes.size() < header_bytes) return fail_at(file_, "is cut off; copy the log again");
   header_.version = load<std::uint8_t>(&bytes[7]);

@@ -96,3 +96,63 @@ flight() {
   run "$ATTEST" replay release.ulg
   has "is taken to be px4-v1.5.5, because the log does not say which release of PX4 wrote it"
 }
+
+@test "a log is known by its first bytes, whatever its ending" {
+  cp "$BATS_FILE_TMPDIR/flight.ulg" FLIGHT.ULG
+  cp FLIGHT.ULG flight
+  run "$ATTEST" replay FLIGHT.ULG flight
+  [ "$status" -eq 0 ]
+  has "PASS 2 of 2"
+  "$ATTEST" record px4-v1.5.5/rates/p_alone --rate 250 --out NEW.ULG
+  [ "$(head -c 4 NEW.ULG)" = ULog ]
+}
+
+@test "a file that is no whole log is named as what it is" {
+  printf 'version https://git-lfs.github.com/spec/v1\noid sha256:1234\nsize 99\n' >pointer.ulg
+  cp pointer.ulg pointer.csv
+  cp pointer.ulg pointer
+  for file in pointer.ulg pointer.csv pointer; do
+    for command in replay plot "compare $BATS_FILE_TMPDIR/flight.ulg"; do
+      run "$ATTEST" $command $file
+      [ "$status" -eq 2 ]
+      has "$file: is a pointer of Git LFS, not the file itself; fetch it with \`git lfs pull\`"
+    done
+  done
+  echo "a text of any kind, without a sample" >TEXT.ULG
+  run "$ATTEST" replay TEXT.ULG
+  [ "$status" -eq 2 ]
+  has "TEXT.ULG: is a text, and not a ULog; name a .ulg file of PX4's logger"
+  : >empty.ulg
+  run "$ATTEST" replay empty.ulg
+  has "empty.ulg: is empty; copy the log again"
+  head -c 300 "$BATS_FILE_TMPDIR/flight.ulg" >cut.ulg
+  run "$ATTEST" replay cut.ulg
+  [ "$status" -eq 2 ]
+  has "cut.ulg: has no sample of any topic, as if it was cut off in its definitions; copy the log"
+}
+
+@test "a log that cannot be judged is skipped, and the others are judged" {
+  cp "$BATS_FILE_TMPDIR/flight.ulg" flight.ulg
+  sed 's/control_state/another_topic/g' flight.ulg >strange.ulg
+  run "$ATTEST" replay strange.ulg flight.ulg --json result.json
+  [ "$status" -eq 0 ]
+  has "skip        strange.ulg: attitude unit"
+  has "  the log has no sample of the topic vehicle_attitude"
+  has "PASS 1 of 3 traces and units agree, 2 not compared"
+  grep -q '"verdict": "skip"' result.json
+  grep -q '"verdict": "pass"' result.json
+  run "$ATTEST" replay strange.ulg flight.ulg --port fault:outputs-late
+  [ "$status" -eq 1 ]
+  run "$ATTEST" replay strange.ulg
+  [ "$status" -eq 2 ]
+  has "has too little to replay: for the controller of PX4 v1.5.5 and v1.3.4: no sample of the topic"
+  run "$ATTEST" faults --log strange.ulg
+  [ "$status" -eq 2 ]
+  has "strange.ulg: has too little to replay"
+  # An unreadable file is an error, after the others are judged.
+  echo "no log" >text.ulg
+  run "$ATTEST" replay text.ulg flight.ulg --json result.json
+  [ "$status" -eq 2 ]
+  has "text.ulg: is a text"
+  grep -q '"verdict": "pass"' result.json
+}

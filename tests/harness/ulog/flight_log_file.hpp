@@ -69,7 +69,7 @@ class FlightLogFile : public ulog::LogFile {
   }
   std::string error(const std::vector<std::string>& assumed = {}) {
     const auto log = written(assumed);
-    return log ? "" : log.error().message;
+    return log ? log->too_little : log.error().message;
   }
 
   ulog::Writer writer_ = ulog::Writer::open(path(), 0).value();

@@ -163,8 +163,8 @@ TEST_F(ULogReader, RefusesOtherFiles) {
     return reader ? "" : reader.error().message;
   };
   const std::string not_a_log = "not a ULog; name a .ulg file of PX4's logger";
-  EXPECT_EQ(error(""), not_a_log);
-  EXPECT_EQ(error("timestamp,in/x\n1,2\n"), not_a_log);
+  EXPECT_EQ(error(""), "is empty; copy the log again");
+  EXPECT_EQ(error("timestamp,in/x\n1,2\n"), "is a text, and " + not_a_log);
   EXPECT_EQ(error("ULog\x01\x12\x36" + raw(std::uint64_t{0}, '\0')), not_a_log);
   EXPECT_EQ(error(Crafted().bytes().substr(0, 15)), "is cut off; copy the log again");
   EXPECT_EQ(error_of(Crafted(2)),
