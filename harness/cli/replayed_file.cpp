@@ -68,7 +68,7 @@ class FileReplay {
     keep(result.verdict, json_of_trace(result, subject.module));
     const ChannelSet not_compared = channels_of(subject.module, "out/") & ~trace.present();
     if (result.verdict == Verdict::pass && is_quiet_ && not_compared.none()) return {};
-    print_result(result, result.name, fmt::format("ticks, {}", name_of(level_)));
+    print_result(result, result.name, "tick", name_of(level_));
     if (not_compared.any()) {
       print("  not compared, because the trace does not have them: {}\n",
             fmt::join(names_of(not_compared), ", "));
@@ -113,8 +113,7 @@ class FileReplay {
     const LogResult& found = results.emplace_back(*std::move(evaluated));
     keep(found.result.verdict, json_of_unit(log, unit, found, options_.log_limits));
     if (found.result.verdict == Verdict::pass && is_quiet_) return {};
-    print_result(found.result, title_of(unit),
-                 found.single_steps ? "single steps, log" : "ticks, log");
+    print_result(found.result, title_of(unit), found.single_steps ? "single step" : "tick", "log");
     print("{}", render_text(unit_table(unit, found, options_.log_limits), {}));
     return {};
   }
@@ -144,11 +143,11 @@ class FileReplay {
   }
 
   // One line for each trace or unit, and a second one with the reason if it does not pass.
-  // `judged_by`: "ticks, numeric" or "single steps, log".
-  void print_result(const VectorResult& result, const std::string& title,
+  // `step`: "tick" or "single step". `judged_by`: the level, or "log".
+  void print_result(const VectorResult& result, const std::string& title, std::string_view step,
                     std::string_view judged_by) {
     print("{:<12}{}  {}", name_of(result.verdict), title, result.profile);
-    if (result.ticks > 0) print("  {} {}", result.ticks, judged_by);
+    if (result.ticks > 0) print("  {}, {}", counted(result.ticks, step), judged_by);
     if (result.verdict == Verdict::pass && result.tightest) {
       print(", tightest headroom {:.3g}x on {}", result.tightest->ratio,
             channels()[result.tightest->channel].name);

@@ -93,10 +93,6 @@ std::string pair_text(const char* which, const SignalPair& pair) {
 }
 
 void add_deviating(const SignalComparison& signal, std::vector<Cell>& lines) {
-  if (signal.compared == 0) {
-    lines.emplace_back(signal.name + ": no timestamp in common, so no sample was compared");
-    return;
-  }
   lines.emplace_back(fmt::format("{}: {} of {} samples deviate by more than {}", signal.name,
                                  signal.deviating, signal.compared,
                                  tolerance_text(signal.tolerance)));
@@ -105,14 +101,22 @@ void add_deviating(const SignalComparison& signal, std::vector<Cell>& lines) {
 }
 
 // "only in the first: 3 signals: a, b, c".
-void add_missing(const char* where, const std::vector<std::string>& names,
-                 std::vector<Cell>& lines) {
+void add_names(const char* what, const std::vector<std::string>& names, std::vector<Cell>& lines) {
   constexpr std::size_t most = 8;
   if (names.empty()) return;
   const auto end = names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), most));
-  lines.emplace_back(fmt::format("only in {}: {}: {}{}", where, counted(names.size(), "signal"),
+  lines.emplace_back(fmt::format("{}: {}: {}{}", what, counted(names.size(), "signal"),
                                  fmt::join(names.begin(), end, ", "),
                                  names.size() > most ? ", ..." : ""));
+}
+
+// Two flights may have a few times in common by chance.
+void add_doubt(std::size_t compared, std::size_t only_got, std::size_t only_want,
+               std::vector<Cell>& lines) {
+  if (100 * compared >= compared + std::min(only_got, only_want)) return;
+  lines.emplace_back(fmt::format(
+      "only {} of {} in the second have a time of the first; these may be two flights (--shift US)",
+      compared, counted(compared + only_want, "sample")));
 }
 
 void add_shift(const TimeShift& shift, std::vector<Cell>& lines) {
@@ -127,19 +131,26 @@ void add_shift(const TimeShift& shift, std::vector<Cell>& lines) {
 // The signals that deviate, what only one source has, and the time by which one lags.
 std::vector<Cell> lines_on(const SignalsComparison& comparison) {
   std::vector<Cell> lines;
+  std::vector<std::string> not_compared;
   std::size_t only_got = 0, only_want = 0;
   for (const SignalComparison& signal : comparison.signals) {
-    if (!signal.agrees()) add_deviating(signal, lines);
+    if (signal.compared == 0) {
+      not_compared.push_back(signal.name);
+    } else if (!signal.agrees()) {
+      add_deviating(signal, lines);
+    }
     only_got += signal.only_got;
     only_want += signal.only_want;
   }
+  add_names("no timestamp in common, so no sample was compared", not_compared, lines);
+  add_doubt(comparison.compared(), only_got, only_want, lines);
   if (only_got + only_want > 0) {
     lines.emplace_back(fmt::format(
         "samples at times that the other does not have: {} in the first, {} in the second",
         only_got, only_want));
   }
-  add_missing("the first", comparison.only_in_got, lines);
-  add_missing("the second", comparison.only_in_want, lines);
+  add_names("only in the first", comparison.only_in_got, lines);
+  add_names("only in the second", comparison.only_in_want, lines);
   if (comparison.shift) add_shift(*comparison.shift, lines);
   return lines;
 }

@@ -74,10 +74,13 @@ StepGaps GapCounts::gaps(std::optional<double> fastest_hz) const {
 std::string too_sparse(Module module, const StepGaps& gaps, std::optional<double> fastest_hz) {
   const bool is_rate_unit = module == Module::rate_unit;
   const char* const sample = is_rate_unit ? "gyro sample" : "sample of the attitude";
+  const char* const samples = is_rate_unit ? "gyro samples" : "samples of the attitude";
   const char* const memory = is_rate_unit ? "the integral and the yaw filter depend on every step"
                                           : "filters and slew rates depend on every step";
   const double median_ms = gaps.median_us / us_per_ms;
-  if (gaps.steps < 2) return fmt::format("the log has {} {}", gaps.steps, sample);
+  if (gaps.steps < 2) {
+    return fmt::format("the log has {} {}", gaps.steps, gaps.steps == 1 ? sample : samples);
+  }
   if (gaps.median_us > slack * us_per_s / slowest_hz(module)) {
     const std::string rate = fastest_hz
                                  ? fmt::format("at up to {:g} Hz (IMU_GYRO_RATEMAX)", *fastest_hz)
@@ -87,9 +90,9 @@ std::string too_sparse(Module module, const StepGaps& gaps, std::optional<double
   }
   if (gaps.part_missing() <= most_missing) return "";
   return fmt::format(
-      "the log lacks about {:.1f}% of the {}s: usually they are {:.3g} ms apart, at most {:.3g} "
+      "the log lacks about {:.1f}% of the {}: usually they are {:.3g} ms apart, at most {:.3g} "
       "ms; {}",
-      100 * gaps.part_missing(), sample, median_ms,
+      100 * gaps.part_missing(), samples, median_ms,
       static_cast<double>(gaps.longest_us) / us_per_ms, memory);
 }
 

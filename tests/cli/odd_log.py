@@ -1,7 +1,8 @@
-"""usage: odd_log.py LOG OUT [--flip TOPIC=N:BIT]... [--info KEY=VALUE]... [--by-px4]
+"""usage: odd_log.py LOG OUT [--flip TOPIC=N:BIT]... [--shift TOPIC=US]...
+                  [--info KEY=VALUE]... [--by-px4]
 
 Copies a ULog with what real logs have. --flip: in the time of sample N (from 0) of a topic, this
-bit is wrong. --info: this info message comes first; the key has its type, as in
+bit is wrong. --shift: all times of a topic are so much later. --info: this info message comes first; the key has its type, as in
 "char[3] x", and the value is a text, or bytes as in hex:00ff.
 --by-px4: another system than attest wrote it, so it is judged as the log of a flight."""
 
@@ -15,6 +16,7 @@ def arguments():
     parser.add_argument("log", type=pathlib.Path)
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("--flip", action="append", default=[])
+    parser.add_argument("--shift", action="append", default=[])
     parser.add_argument("--info", action="append", default=[])
     parser.add_argument("--by-px4", action="store_true")
     return parser.parse_args()
@@ -42,7 +44,13 @@ def flips(options):
     return found
 
 
-def edited(log, wrong, infos):
+def shifts(options):
+    """{topic: us}"""
+    pairs = (text.split("=") for text in options)
+    return {topic.encode(): int(time) for topic, time in pairs}
+
+
+def edited(log, wrong, later, infos):
     subscribed, seen, at = {}, {}, 16
     head_end = at
     if log[at + 2] == ord("B"):
@@ -58,6 +66,7 @@ def edited(log, wrong, infos):
             topic = subscribed[bytes(body[:2])]
             sample = seen[topic] = seen.get(topic, -1) + 1
             time = struct.unpack_from("<Q", body, 2)[0] ^ wrong.get((topic, sample), 0)
+            time += later.get(topic, 0)
             struct.pack_into("<Q", body, 2, time)
         yield message(chr(kind), bytes(body))
         at += 3 + size
@@ -68,4 +77,5 @@ data = args.log.read_bytes()
 if args.by_px4:
     data = data.replace(b"sys_nameattest", b"sys_nameanyone")
     data = data.replace(b"attest_source", b"source_of_log")
-args.out.write_bytes(b"".join(edited(data, flips(args.flip), [info(text) for text in args.info])))
+messages = edited(data, flips(args.flip), shifts(args.shift), [info(text) for text in args.info])
+args.out.write_bytes(b"".join(messages))

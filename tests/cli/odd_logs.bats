@@ -145,7 +145,7 @@ flight() {
   [ "$status" -eq 1 ]
   run "$ATTEST" replay strange.ulg
   [ "$status" -eq 2 ]
-  has "has too little to replay: for the controller of PX4 v1.5.5 and v1.3.4: no sample of the topic"
+  has "has too little to replay: for the controller of PX4 v1.5.5 and v1.3.4: no sample of the"
   run "$ATTEST" faults --log strange.ulg
   [ "$status" -eq 2 ]
   has "strange.ulg: has too little to replay"
@@ -155,4 +155,28 @@ flight() {
   [ "$status" -eq 2 ]
   has "text.ulg: is a text"
   grep -q '"verdict": "pass"' result.json
+}
+
+@test "what has no common time is one line, and a chance hit is no comparison" {
+  flight shifted.ulg --shift control_state=1 --shift actuator_controls_0=1
+  run "$ATTEST" compare shifted.ulg "$BATS_FILE_TMPDIR/flight.ulg"
+  [ "$status" -eq 1 ]
+  [ "$(grep -c "no timestamp in common" <<<"$output")" -eq 1 ]
+  has "no timestamp in common, so no sample was compared: 15 signals: actuator_controls_0"
+  lacks "may be two flights"
+  printf 'timestamp,x\n' | tee a.csv >b.csv
+  for i in $(seq 200); do
+    echo "$((4000 * i)),1" >>a.csv
+    echo "$((4000 * i + (i > 1 ? 1 : 0))),2" >>b.csv
+  done
+  run "$ATTEST" compare b.csv a.csv --by-time
+  [ "$status" -eq 1 ]
+  has "only 1 of 200 samples in the second have a time of the first; these may be two flights"
+}
+
+@test "a single tick is no ticks" {
+  "$ATTEST" record px4-v1.5.5/rates/p_alone --rate 250 --out own.csv
+  head -n "$(($(grep -n ^timestamp own.csv | cut -d: -f1) + 1))" own.csv >one.csv
+  run "$ATTEST" replay one.csv
+  has "  1 tick, numeric"
 }
