@@ -2,8 +2,8 @@
                   [--info KEY=VALUE]... [--by-px4]
 
 Copies a ULog with what real logs have. --flip: in the time of sample N (from 0) of a topic, this
-bit is wrong. --shift: all times of a topic are so much later. --info: this info message comes first; the key has its type, as in
-"char[3] x", and the value is a text, or bytes as in hex:00ff.
+bit is wrong. --shift: all times of a topic are so much later. --info: this info message comes
+first; the key has its type, as in "char[3] x", and the value is a text, or bytes as in hex:00ff.
 --by-px4: another system than attest wrote it, so it is judged as the log of a flight."""
 
 import argparse
