@@ -57,23 +57,26 @@ TimeCheck::Topic& TimeCheck::topic_of(const Reader& reader, const Subscription& 
 Result<TimeFit> TimeCheck::check(Reader& reader, Message& message) {
   const Data& data = std::get<Data>(message);
   const std::size_t index = data.subscription->index;
-  const Topic topic = topic_of(reader, *data.subscription);
+  Topic& topic = topic_of(reader, *data.subscription);
   if (!topic.time) return TimeFit::plausible;
   const auto time_us = topic.time->of<std::uint64_t>(data);
   const bool is_first = !topic.last_us && topic.early < most_early;
   const bool is_ahead = !newest_us_ || is_far_after(time_us, *newest_us_, most_ahead_us);
-  if (is_ahead || is_first) {
-    const auto place = reader.place_of_last();
-    const auto following = read_ahead(reader, index, time_us);
-    if (!following) return tl::unexpected(following.error());
-    reader.return_to(place);
-    if (const auto again = reader.next(message); !again) return tl::unexpected(again.error());
-    if (is_ahead && is_too_late(time_us, *following)) return TimeFit::too_late;
-    const bool is_behind = !newest_us_ || is_far_after(*newest_us_, time_us, most_behind_us);
-    if (is_first && is_behind && is_too_early(time_us, *following)) {
-      ++topics_[index].early;
-      return TimeFit::too_early;
-    }
+  if (!is_ahead && !is_first) {
+    topic.last_us = time_us;
+    if (time_us > *newest_us_) newest_us_ = time_us;
+    return TimeFit::plausible;
+  }
+  const auto place = reader.place_of_last();
+  const auto following = read_ahead(reader, index, time_us);  // may move `topic`
+  if (!following) return tl::unexpected(following.error());
+  reader.return_to(place);
+  if (const auto again = reader.next(message); !again) return tl::unexpected(again.error());
+  if (is_ahead && is_too_late(time_us, *following)) return TimeFit::too_late;
+  const bool is_behind = !newest_us_ || is_far_after(*newest_us_, time_us, most_behind_us);
+  if (is_first && is_behind && is_too_early(time_us, *following)) {
+    ++topics_[index].early;
+    return TimeFit::too_early;
   }
   topics_[index].last_us = time_us;
   newest_us_ = std::max(newest_us_.value_or(time_us), time_us);
