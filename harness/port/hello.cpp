@@ -120,6 +120,10 @@ void read_frames(Members& members, Hello& hello) {
   if (hello.has_batch && hello.frames == FrameForm::text) {
     members.set_error("has `batch`, which text frames do not have");
   }
+  hello.byte_after_line = members.optional<bool>("byte_after_line", "true or false");
+  if (hello.byte_after_line && hello.frames != FrameForm::text) {
+    members.set_error("has `byte_after_line`, which is for text frames only");
+  }
 }
 
 void read_numbers(Members& members, Hello& hello) {

@@ -24,6 +24,7 @@ struct Hello {
   FrameForm frames = FrameForm::binary;
   ModuleSet modules;  // with the controller if one of the profiles has it
   bool has_batch = false;
+  bool byte_after_line = false;  // its reader returns a line when the byte after it has arrived
   std::vector<std::string> unsupported_groups;
   Lacks lacks;
   std::optional<int> fraction_bits;

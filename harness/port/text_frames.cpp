@@ -43,7 +43,12 @@ bool is_possible(const Channel& channel, double value) {
 class TextConversation final : public Conversation {
  public:
   TextConversation(PipedProgram program, Hello hello)
-      : Conversation(std::move(program), std::move(hello)) {}
+      : Conversation(std::move(program), std::move(hello)),
+        line_end_(this->hello().byte_after_line ? "\n " : "\n") {
+    // The byte after the greeting, now that it is known to be harmless. If it cannot be written,
+    // the first request says so.
+    if (this->hello().byte_after_line) this->program().write(" ");
+  }
 
   int create(std::uint32_t unit, Module module, const std::string& profile,
              const std::string& definition) override {
@@ -120,7 +125,7 @@ class TextConversation final : public Conversation {
     request["do"] = name_of(kind);
     request["unit"] = unit;
     request["sequence"] = sequence;
-    if (!program().write(text_of(request) + '\n')) ended(kind);
+    if (!program().write(text_of(request) + line_end_)) ended(kind);
     const auto line = program().read_line(max_line);
     if (!line && program().unread().size() > max_line) {
       broken(kind, fmt::format("has no end within {} bytes", max_line));
@@ -147,6 +152,8 @@ class TextConversation final : public Conversation {
     broken(kind, fmt::format("has the result {}; it is `ok`, `unsupported`, `invalid` or `failed`",
                              text_of(answer["result"])));
   }
+
+  const std::string line_end_;  // of requests; its space is before the JSON of the next line
 };
 
 }  // namespace

@@ -120,6 +120,8 @@ TEST(ParseHello, SaysWhichMemberIsWrong) {
   EXPECT_THAT(wrong_with("fixed_step", "\"0\""), HasSubstr("its fixed step: "));
   EXPECT_THAT(wrong_with("modules", "[\"gimbal\"]"), HasSubstr("has the module `gimbal`"));
   EXPECT_THAT(wrong_with("frames", "\"xml\""), HasSubstr("has `frames` = `xml`"));
+  EXPECT_EQ(wrong_with("byte_after_line", "true"), "none");
+  EXPECT_THAT(wrong_with("byte_after_line", "1"), HasSubstr("it is true or false"));
   EXPECT_THAT(wrong_with("batch", "true"), HasSubstr("`batch`, which text frames do not have"));
   EXPECT_THAT(wrong_with("fixed_setp", "\"250\""), HasSubstr("did you mean `fixed_step`?"));
   EXPECT_THAT(parse_hello("[1]").error().message, HasSubstr("is `[1]`, which is no JSON object"));
@@ -127,12 +129,44 @@ TEST(ParseHello, SaysWhichMemberIsWrong) {
               HasSubstr("lacks `name`, which is the name of the port"));
 }
 
-// A file with the answers of a program.
-PipedProgram program_that_wrote(std::string_view answers) {
+int null_device() { return ::open("/dev/null", O_WRONLY | O_CLOEXEC); }
+
+// A file with the answers of a program. Takes ownership of `requests`.
+PipedProgram program_that_wrote(std::string_view answers, int requests = null_device()) {
   const int file = ::memfd_create("answers", MFD_CLOEXEC);
   EXPECT_EQ(::write(file, answers.data(), answers.size()), static_cast<ssize_t>(answers.size()));
   ::lseek(file, 0, SEEK_SET);
-  return PipedProgram::recorded(::open("/dev/null", O_WRONLY | O_CLOEXEC), file);
+  return PipedProgram::recorded(requests, file);
+}
+
+// What attest writes to a program that declares `members`, until the answer to a `destroy`.
+std::string written_to_program(const std::string& members) {
+  const std::string hello = R"({"protocol":1,"name":"n","version":"2","profiles":[])" + members;
+  const int written = ::memfd_create("requests", MFD_CLOEXEC);
+  auto talk = Conversation::begin(
+      program_that_wrote(hello + "}\n" + R"({"sequence":1,"result":"ok"})" + "\n", ::dup(written)));
+  if (!talk) return talk.error().to_string();
+  EXPECT_EQ((*talk)->destroy(1), ATTEST_OK);
+  std::string bytes(4096, 0);
+  bytes.resize(static_cast<std::size_t>(::pread(written, bytes.data(), bytes.size(), 0)));
+  ::close(written);
+  return bytes;
+}
+
+TEST(Conversation, WritesAByteAfterEachLineIfTheProgramAsksForIt) {
+  const std::string request = R"({"do":"destroy","sequence":1,"unit":1})"
+                              "\n";
+  EXPECT_EQ(written_to_program(R"(,"frames":"text")"), greeting() + request);
+  EXPECT_EQ(written_to_program(R"(,"frames":"text","byte_after_line":true)"),
+            greeting() + ' ' + request + ' ');
+}
+
+TEST(ParseHello, ByteAfterLineIsForTextFramesOnly) {
+  const auto hello =
+      parse_hello(R"({"protocol":1,"name":"n","version":"2","profiles":[],"frames":"shared",)"
+                  R"("byte_after_line":true})");
+  ASSERT_FALSE(hello);
+  EXPECT_THAT(hello.error().message, HasSubstr("`byte_after_line`, which is for text frames"));
 }
 
 TEST(Conversation, ShowsControlCharactersOfAnAnswer) {

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The starter in Python with text frames. `in_text.py MODE` answers one step wrongly."""
+"""The starter in Python with text frames. `in_text.py MODE` answers one step wrongly, but
+`in_text.py fgetl` is right: it writes its handshake first, and reads as Octave does."""
 
 import json
 import pathlib
@@ -94,13 +95,28 @@ def answer(request, units):
     return reply | {"result": result}
 
 
+def lines_of_fgetl():
+    """Lines of stdin. Each is returned only when the byte after its line feed has arrived."""
+    line = b""
+    while byte := sys.stdin.buffer.read(1):
+        if line.endswith(b"\n"):
+            yield line
+            line = b""
+        line += byte
+
+
 def main():
     mode = sys.argv[1] if len(sys.argv) > 1 else "right"
-    sys.stdin.readline()
     hello = {"protocol": 1, "name": "in text", "version": "1", "frames": "text"}
-    print(json.dumps(hello | {"profiles": ["px4-v1.5.5"]}), flush=True)
+    hello |= {"profiles": ["px4-v1.5.5"]} | ({"byte_after_line": True} if mode == "fgetl" else {})
+    lines = lines_of_fgetl() if mode == "fgetl" else sys.stdin
+    if mode == "fgetl":
+        print(json.dumps(hello), flush=True)
+    next(lines)
+    if mode != "fgetl":
+        print(json.dumps(hello), flush=True)
     units, steps = {}, 0
-    for line in sys.stdin:
+    for line in lines:
         request = json.loads(line)
         reply = answer(request, units)
         steps += request["do"] == "step"
