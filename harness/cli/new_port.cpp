@@ -38,6 +38,8 @@ constexpr std::array languages{
     Language{"c_cascade", "C, with both units of PX4 v1.14 to v1.18", "cc", true, "attitude"},
     Language{"c_law", "C, with the attitude law and the rate law alone", "cc", true, "rate_law"},
     Language{"cpp", "C++", "c++", true, "attitude"},
+    Language{"octave", "Octave, with the attitude law and the rate law alone", "octave-cli", false,
+             "rate_law"},
     Language{"python", "Python", "python3", false, "attitude"},
     Language{"python_cascade", "Python, with both units of PX4 v1.14 to v1.18", "python3", false,
              "attitude"},
@@ -157,8 +159,8 @@ void add_new_port(const CommandLine& line) {
   command
       .option("--lang", options->language,
               "Port to start from: `c`, `cpp`, `python`, `rust` or `simulink` for v1.5.5 and "
-              "v1.3.4; `c_cascade` or `python_cascade` for v1.14 to v1.18; `c_law` or "
-              "`python_law` for the two laws of v1.14 to v1.17 alone")
+              "v1.3.4; `c_cascade` or `python_cascade` for v1.14 to v1.18; `c_law`, "
+              "`python_law` or `octave` for the two laws of v1.14 to v1.17 alone")
       .type("LANG");
   command.examples(
       {{"attest new-port mine --lang c", "a port in C; mine/check builds and runs it"},

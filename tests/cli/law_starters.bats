@@ -43,6 +43,31 @@ in_python="$SOURCE/controller/starters/python_law"
   lacks BAD
 }
 
+@test "the starter in Octave has them to the bit, too" {
+  command -v octave-cli >/dev/null || skip "no octave-cli"
+  local port="proc:octave-cli --norc --quiet $SOURCE/controller/starters/octave/port.m"
+  run "$ATTEST" run --level exact --group attitude_law,rate_law --profile px4-v1.17 --port "$port"
+  [ "$status" -eq 0 ]
+  [[ $output =~ PASS\ ([0-9]+)\ of\ ([0-9]+) ]]
+  [ "${BASH_REMATCH[1]}" -ge 39 ]
+  [ "${BASH_REMATCH[1]}" -eq "${BASH_REMATCH[2]}" ]
+  run "$ATTEST" smoke --port "$port"
+  [ "$status" -eq 0 ]
+  lacks BAD
+}
+
+@test "a mistake in the starter in Octave is found" {
+  command -v octave-cli >/dev/null || skip "no octave-cli"
+  cp -r "$SOURCE/controller/starters/octave" wrong
+  sed -i 's/ + integral - / - integral - /' wrong/rate_law.m
+  run cmp -s wrong/rate_law.m "$SOURCE/controller/starters/octave/rate_law.m"
+  [ "$status" -eq 1 ]
+  run "$ATTEST" run --filter 'px4-v1.17/rate_law/integral' \
+    --port "proc:octave-cli --norc --quiet wrong/port.m"
+  [ "$status" -eq 1 ]
+  has "look first at the rate law"
+}
+
 @test "a mistake in a law of theirs is found" {
   cp -r "$in_python" wrong
   sed -i 's/+ self.integral\[axis\]$/- self.integral[axis]/' wrong/law.py

@@ -49,6 +49,11 @@ made() {
   has "px4-v1.18: vectors by group and rate"
   has "the port does not support profile px4-v1.5.5"
 }
+@test "a new port in Octave of the two laws alone" {
+  made octave octave-cli rate_law
+  has "px4-v1.18: vectors by group and rate"
+  has "the port does not support profile px4-v1.5.5"
+}
 @test "a new port in Rust" { made rust cargo; }
 @test "a new port of a Simulink model" { made simulink cc; }
 
@@ -56,7 +61,8 @@ made() {
   run "$ATTEST" new-port mine --lang pyton
   [ "$status" -eq 2 ]
   has "no starter in \`pyton\`; did you mean \`python\`?"
-  has "; there are c, c_cascade, c_law, cpp, python, python_cascade, python_law, rust, simulink"
+  has "; there are c, c_cascade, c_law, cpp, octave, python, python_cascade, python_law, rust, "
+  has ", rust, simulink"
   [ ! -e mine ]
   mkdir mine
   echo mine >mine/file
@@ -84,4 +90,10 @@ made() {
   PATH=$PWD/bin run mine/check
   [ "$status" -eq 2 ]
   has "check: python3 is missing: install it"
+  PATH=$PWD/bin run "$ATTEST" new-port laws --lang octave
+  [ "$status" -eq 0 ]
+  has "note: octave-cli is not installed; laws/packages.txt names its package"
+  PATH=$PWD/bin run laws/check
+  [ "$status" -eq 2 ]
+  has "check: octave-cli is missing: install it"
 }
