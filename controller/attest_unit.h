@@ -249,7 +249,7 @@ typedef struct attest_unit {
 #define ATTEST_EXTENSION_LACKS "attest.lacks"
 
 /* Extension: const char*, the arithmetic of a port in fixed point: "fixed:22" when its signals have
- * 22 fraction bits; 20 to 32 are allowed. The numeric level then allows, in addition to the
+ * 22 fraction bits; 16 to 32 are allowed. The numeric level then allows, in addition to the
  * tolerances for floats, some multiples of the last bit (LSB). Every report says that. */
 #define ATTEST_EXTENSION_ARITHMETIC "attest.arithmetic"
 

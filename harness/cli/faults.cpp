@@ -281,7 +281,7 @@ void add_faults(const CommandLine& line) {
           .option("--fraction-bits", options->fraction_bits,
                   "Use the tolerances of a port in fixed point with this number of fraction "
                   "bits; default: those of floating point")
-          .range(20, 32);
+          .range(fewest_fraction_bits, most_fraction_bits);
   const Option level =
       command
           .option("--level", options->level,

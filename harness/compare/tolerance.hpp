@@ -59,7 +59,7 @@ class Tolerances {
 
   // Widens the tolerances for a port in fixed point with this number of fraction bits; only at the
   // numeric level. Each tolerance becomes at least the number of LSBs (last bits) below. These
-  // exceed the errors of correct ports that round, measured at 20 to 24 bits:
+  // exceed the errors of correct ports that round, measured at 16 to 24 bits:
   // - rates setpoints: up to 740 LSB, near a half turn
   // - controls: 750 LSB. A control that consists mostly of its D part has an error in proportion to
   //   its size, because 1 / dt is up to 500 and dt has an error of half an LSB.

@@ -125,9 +125,10 @@ class Port {
   virtual void finish() {}
 };
 
-// The fraction bits that a port in fixed point can have. With fewer bits, wrong ports would pass
-// the tolerance. With more, the tolerance is practically that of floats.
-inline constexpr int fewest_fraction_bits = 20, most_fraction_bits = 32;
+// The fraction bits that a port in fixed point can have. With fewer bits, too many wrong ports
+// would pass the tolerance: of the detectable faults of px4-v1.16.0, 9 of 396 pass with 16 bits,
+// and none with 20. With more, the tolerance is practically that of floats.
+inline constexpr int fewest_fraction_bits = 16, most_fraction_bits = 32;
 
 // The error in a name: "is longer than 200 bytes". Empty if it is printable and short enough.
 std::string wrong_in_name(std::string_view name);

@@ -15,12 +15,32 @@
 #include "harness/verify/declared_lacks.hpp"
 #include "harness/verify/fixed_step.hpp"
 #include "harness/verify/judge.hpp"
+#include "harness/verify/reference_comparison.hpp"
 #include "harness/verify/saved_traces.hpp"
 #include "harness/verify/silent_topics.hpp"
 #include "harness/verify/stopwatch.hpp"
 
 namespace attest {
 namespace {
+
+// Judges a comparison in open loop. A port in fixed point may take the other branch of a decision
+// that its numbers do not resolve. If all ticks before such a decision agree, and a later one
+// deviates, the vector is skipped. NaN and infinity are never excused.
+void judge_outputs(const Comparison& comparison, const ModuleUnderTest& subject, const Trace& given,
+                   const PortHost& host, Level level, VectorResult& result) {
+  const auto bits = host.declarations().fraction_bits;
+  const bool may_be_near =
+      bits && level == Level::numeric && comparison.first && !comparison.got_non_finite;
+  const auto near = may_be_near ? first_near_decision(subject, given, *bits, comparison.first->tick)
+                                : std::nullopt;
+  if (!near) return judge(comparison, result);
+  result.verdict = Verdict::skip;
+  result.compared.reset();
+  result.reason = fmt::format(
+      "nearer to a decision of the law than {} fraction bits resolve: {} at tick {}; the outputs "
+      "deviate from tick {} on",
+      *bits, name_of(near->decision), near->tick, comparison.first->tick);
+}
 
 // Drives a fresh unit through `answered`, which has the inputs of the vector, and judges its
 // outputs. After a fault, `answered` keeps only the ticks before it.
@@ -44,7 +64,8 @@ void run_and_judge(Trace& answered, const Trace& want, const ModuleUnderTest& su
     judge(*fault, result);
   } else {
     if (fault) leave_out_from(fault->tick, want, answered);
-    judge(compare(answered, want, tolerances), result);
+    judge_outputs(compare(answered, want, tolerances), subject, answered, host, tolerances.level(),
+                  result);
     if (host.declarations().is_recorded && fails_a_run(result.verdict)) {
       explain_recording(answered, want, result);
     }

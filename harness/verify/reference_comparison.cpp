@@ -75,4 +75,18 @@ Result<ReferenceComparison> compare_with_reference(const Trace& flown, const std
   return answering.finish(flown.samples.size());
 }
 
+std::optional<NearDecision> first_near_decision(const ModuleUnderTest& subject, const Trace& given,
+                                                int fraction_bits, std::size_t last_tick) {
+  const auto meter = margin_meter(subject);
+  if (!meter) return std::nullopt;
+  PendingChanges changes(given.parameters);
+  for (std::size_t tick = 0; tick <= last_tick && tick < given.samples.size(); ++tick) {
+    const Margins& margins = meter->step(changes.take_until(tick), given.samples[tick]);
+    if (const auto decision = made_by_rounding(margins, fraction_bits)) {
+      return NearDecision{*decision, tick};
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace attest

@@ -50,3 +50,15 @@ load common
   run "$ATTEST" faults --fraction-bits 12
   [ "$status" -eq 2 ]
 }
+
+@test "the laws with 16 fraction bits conform, and a gain that is 2 % off is found" {
+  [ -e "$PORTS/right_pure_laws_16.so" ] || skip "built without right ports"
+  local run=("$ATTEST" run --group attitude_law,rate_law --port)
+  run "${run[@]}" "lib:$PORTS/right_pure_laws_16.so"
+  [ "$status" -eq 0 ]
+  has "conformant: attitude_law, rate_law of px4-v1.16.0, numeric for fixed point with 16 fraction"
+  has "conformant: attitude_law, rate_law of px4-v1.5.5, numeric for fixed point with 16 fraction"
+  run "${run[@]}" "lib:$PORTS/wrong_pure_laws_16.so"
+  [ "$status" -eq 1 ]
+  has "look first at the attitude law"
+}

@@ -25,13 +25,13 @@ TEST(Builtin, MakesUnitsOfItsProfilesOnly) {
 }
 
 TEST(FractionBits, AreThoseOfTheArithmetic) {
-  EXPECT_EQ(parse_fraction_bits("fixed:20").value(), 20);
+  EXPECT_EQ(parse_fraction_bits("fixed:16").value(), 16);
   EXPECT_EQ(parse_fraction_bits("fixed:32").value(), 32);
   for (const char* text :
-       {"", "fixed", "fixed:", "fixed:19", "fixed:33", "fixed:22x", "float", "22"}) {
+       {"", "fixed", "fixed:", "fixed:15", "fixed:33", "fixed:22x", "float", "22"}) {
     const auto bits = parse_fraction_bits(text);
     ASSERT_FALSE(bits) << text;
-    EXPECT_THAT(bits.error().message, HasSubstr("must be `fixed:BITS`, from 20 to 32"));
+    EXPECT_THAT(bits.error().message, HasSubstr("must be `fixed:BITS`, from 16 to 32"));
   }
 }
 

@@ -108,10 +108,44 @@ class Reciting final : public PortHost {
   }
   bool supports(const std::string&) override { return true; }
 
+  Declarations declarations_;
+
  private:
   Trace answers_;
-  Declarations declarations_;
 };
+
+// Thrust comes as near as 0.005 to the integrator's gate at tick 10.
+constexpr const char* over_the_gate =
+    "[vehicle_attitude_setpoint]\nthrust = { signal = \"samples\", times_ticks = [0, 10], "
+    "values = [0.5, 0.205] }\n";
+
+TEST_F(EvaluateTest, ADecisionThatFewBitsDoNotResolveIsNotJudged) {
+  suite_.add("gate", over_the_gate);
+  const Trace right = answers_of_reference(suite_[0])[0];
+  const auto judged = [&](std::size_t tick, float wrong, std::optional<int> bits, Level level) {
+    Trace answers = right;
+    answers.samples[tick].out.actuator_controls_0.control[0] += wrong;
+    Reciting port(answers);
+    port.declarations_.fraction_bits = bits;
+    const auto golden = Goldens(suite_.golden()).open(suite_[0]);
+    return evaluate_case(suite_[0], Rate::hz(100), *golden, port, {level}).value();
+  };
+  const VectorResult near = judged(12, 0.1f, 16, Level::numeric);
+  EXPECT_EQ(near.verdict, Verdict::skip);
+  EXPECT_EQ(near.reason,
+            "nearer to a decision of the law than 16 fraction bits resolve: thrust gate at tick "
+            "10; the outputs deviate from tick 12 on");
+  EXPECT_FALSE(near.first || near.compared || near.exact_only);
+  EXPECT_EQ(judged(10, 0.1f, 16, Level::numeric).verdict, Verdict::skip);
+  EXPECT_EQ(judged(12, 0.0f, 16, Level::numeric).verdict, Verdict::pass);
+  // Before it; with more bits; in floating point; at another level; no number.
+  EXPECT_EQ(judged(9, 0.1f, 16, Level::numeric).verdict, Verdict::fail);
+  EXPECT_EQ(judged(12, 0.1f, 20, Level::numeric).verdict, Verdict::fail);
+  EXPECT_EQ(judged(12, 0.1f, std::nullopt, Level::numeric).verdict, Verdict::fail);
+  EXPECT_EQ(judged(12, 0.1f, 16, Level::exact).verdict, Verdict::fail);
+  EXPECT_EQ(judged(12, std::numeric_limits<float>::infinity(), 16, Level::numeric).verdict,
+            Verdict::non_finite);
+}
 
 // The case is unchanged, but its inputs are not: this happens if the harness changes.
 TEST_F(EvaluateTest, AGoldenForOtherInputsIsAnError) {
