@@ -23,8 +23,9 @@ class AbiUnit final : public Unit {
   AbiUnit& operator=(const AbiUnit&) = delete;
 
   int set_parameter(const std::string& name, float value) override {
-    if (const auto* constant = lacks_.constant(name)) return constant->answer_to(value);
-    return abi_.set_parameter(table_, self_, name.c_str(), value);
+    const auto ask = [&] { return abi_.set_parameter(table_, self_, name.c_str(), value); };
+    const auto* const constant = lacks_.constant(name);
+    return constant ? constant->answer_to(value, ask) : ask();
   }
   int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
     if (timestamp_sample_ == nullptr) return ATTEST_OK;

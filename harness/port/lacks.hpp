@@ -24,8 +24,12 @@ struct ConstantParameter {
   std::string name;
   float value;
 
-  // The result of set_parameter(). The port is not asked.
-  int answer_to(float wanted) const { return wanted == value ? ATTEST_OK : ATTEST_UNSUPPORTED; }
+  // The result of set_parameter(). The port is asked for another value only. If it takes that, the
+  // declaration is not true.
+  template <typename Ask>
+  int answer_to(float wanted, Ask ask) const {
+    return wanted == value || ask() == ATTEST_OK ? ATTEST_OK : ATTEST_UNSUPPORTED;
+  }
 };
 
 struct Lacks {

@@ -28,9 +28,12 @@ class ProgramUnit final : public Unit {
   ProgramUnit& operator=(const ProgramUnit&) = delete;
 
   int set_parameter(const std::string& name, float value) override {
-    if (const auto* constant = lacks_.constant(name)) return constant->answer_to(value);
-    const std::lock_guard lock(talk_->mutex());
-    return talk_->set_parameter(number_, name, value);
+    const auto ask = [&] {
+      const std::lock_guard lock(talk_->mutex());
+      return talk_->set_parameter(number_, name, value);
+    };
+    const auto* const constant = lacks_.constant(name);
+    return constant ? constant->answer_to(value, ask) : ask();
   }
 
   int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {

@@ -7,9 +7,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/compare/compare.hpp"
 #include "harness/golden/recorded.hpp"
+#include "harness/golden/reference.hpp"
 #include "harness/port/profiles.hpp"
 #include "harness/trace/output_topics.hpp"
+#include "harness/verify/judge.hpp"
 
 namespace attest {
 namespace {
@@ -48,6 +51,7 @@ bool adds_constants(const Lacks& lacks, const ModuleUnderTest& subject, const Tr
       result.verdict = Verdict::unsupported;
       result.reason = fmt::format("{} is {} in the port, and this vector sets {}", constant.name,
                                   constant.value, other->value);
+      result.lacking = {constant.name};
       return false;
     }
     // Also if the inputs set it: until then they have the default.
@@ -135,6 +139,26 @@ FeatureSet lacking_features(const Lacks& lacks, const Flown& flown, VectorResult
     lacking |= lacking_features(lacks, *trace, {result.profile, module_of(trace->present)});
   }
   return lacking;
+}
+
+void try_constant(const ModuleUnderTest& subject, const Trace& inputs, const Tolerances& tolerances,
+                  PortHost& host, VectorResult& result) {
+  const Lacks& lacks = host.declarations().lacks;
+  Trace with_constant = inputs;
+  for (ParameterChange& change : with_constant.parameters) {
+    if (change.name == result.lacking.front()) change.value = lacks.constant(change.name)->value;
+  }
+  const auto want = reference_outputs(subject, inputs);
+  const auto constant = reference_outputs(subject, with_constant);
+  if (!want || !constant || compare(*constant, *want, tolerances).agrees()) {
+    result.lacking.clear();
+    return;
+  }
+  Trace answered = inputs;
+  for (Sample& sample : answered.samples) sample.clear_outputs();
+  if (host.drive(subject, answered)) return;
+  fill_in(lacks.outputs, *want, answered);
+  if (compare(answered, *want, tolerances).agrees()) result.has_after_all = result.lacking;
 }
 
 std::vector<std::string> needless_lacks(const std::vector<VectorResult>& results) {

@@ -4,7 +4,8 @@
 
 #include <vector>
 
-#include "harness/host/declarations.hpp"
+#include "harness/compare/tolerance.hpp"
+#include "harness/host/port_host.hpp"
 #include "harness/loop/flight.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/verify/verdict.hpp"
@@ -13,7 +14,7 @@ namespace attest {
 
 // Adds the constants of the port that differ from the defaults to `parameters`, which replace those
 // of the inputs. False, and the result is unsupported: the inputs or `parameters` give one of the
-// constants another value.
+// constants another value. VectorResult::lacking then names it.
 bool adds_constants(const Lacks& lacks, const ModuleUnderTest& subject, const Trace& inputs,
                     std::vector<ParameterChange>& parameters, VectorResult& result);
 
@@ -36,8 +37,15 @@ bool excludes_flight(const Lacks& lacks, const Case& the_case, VectorResult& res
 // has other constants than the flight.
 FeatureSet lacking_features(const Lacks& lacks, const Flown& flown, VectorResult& result);
 
+// Whether the port has the parameter VectorResult::lacking after all: its outputs for `inputs`,
+// which give it another value than that of the constant, agree with the law's. If so,
+// VectorResult::has_after_all names it. The value does not matter here if the law's outputs are the
+// same with that of the constant: then clears `lacking`.
+void try_constant(const ModuleUnderTest& subject, const Trace& inputs, const Tolerances& tolerances,
+                  PortHost& host, VectorResult& result);
+
 // What the port declares that it lacks, but has: an output topic that it published, and a feature
-// if all vectors pass that use it and no other one that the port lacks.
+// or a parameter if all vectors pass that use it and no other one that the port lacks.
 std::vector<std::string> needless_lacks(const std::vector<VectorResult>& results);
 
 }  // namespace attest

@@ -78,8 +78,8 @@ struct VectorResult {
   // The vectors that the same process of the port ran before, if this failure may depend on them:
   // it does not occur alone, or it is a timeout, which is not repeated.
   std::vector<std::string> after;
-  // Declared lacks (declared_lacks.hpp): the features because of which the vector is unsupported,
-  // and what the port has although it declares that it lacks it.
+  // Declared lacks (declared_lacks.hpp): the features, or the parameter, because of which the
+  // vector is unsupported, and what the port has although it declares that it lacks it.
   std::vector<std::string> lacking, has_after_all;
   // Topics as "rate_unit/rate_ctrl_status" that the golden publishes (silent_topics.hpp): those
   // that the port publishes too, and those that it does not publish at any tick. The latter were

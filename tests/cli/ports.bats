@@ -142,6 +142,14 @@ TASKS
     "['mc_att_ctrl_status', 'battery', 'tpa', 'MC_YAW_FF=0.25']" ]
 }
 
+@test "a constant that the port lets change is in a note" {
+  run "$ATTEST" run --port "lib:$PORTS/port_constant_that_changes.so" --profile px4-v1.5.5 \
+    --group yaw_feed_forward,rate_limit --rate 250
+  [ "$status" -eq 0 ]
+  has "the port declares that it lacks MC_YAW_FF, but it has that"
+  has "unsupported: MC_YAW_FF is 0.5 in the port, and this vector sets"
+}
+
 @test "a topic that a port never publishes is one failure, and the rest is judged" {
   run "$ATTEST" run --port "lib:$PORTS/port_silent_topic.so" --profile px4-v1.5.5 --rate 250
   [ "$status" -eq 1 ]

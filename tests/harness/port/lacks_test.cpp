@@ -30,8 +30,12 @@ TEST(Lacks, AreFeaturesOutputsAndConstants) {
             channels_of(Module::rate_unit, "out/rate_ctrl_status."));
   EXPECT_TRUE((lacks.outputs & channels_of(Module::attitude_unit, "out/")).none());
   ASSERT_NE(lacks.constant("MC_YAW_FF"), nullptr);
-  EXPECT_EQ(lacks.constant("MC_YAW_FF")->answer_to(0.25f), ATTEST_OK);
-  EXPECT_EQ(lacks.constant("MC_YAW_FF")->answer_to(0.5f), ATTEST_UNSUPPORTED);
+  for (const int result : {ATTEST_OK, ATTEST_UNSUPPORTED, ATTEST_INVALID}) {
+    const auto ask = [&] { return result; };
+    EXPECT_EQ(lacks.constant("MC_YAW_FF")->answer_to(0.25f, ask), ATTEST_OK);
+    EXPECT_EQ(lacks.constant("MC_YAW_FF")->answer_to(0.5f, ask),
+              result == ATTEST_OK ? ATTEST_OK : ATTEST_UNSUPPORTED);
+  }
   EXPECT_EQ(lacks.constant("MC_YAW_P"), nullptr);
 }
 

@@ -147,6 +147,33 @@ TEST_F(EvaluateTest, ADecisionThatFewBitsDoNotResolveIsNotJudged) {
             Verdict::non_finite);
 }
 
+// The port declares MC_PITCHRATE_P = 0.15, the default; the case sets 0.3.
+TEST_F(EvaluateTest, AConstantThatThePortLetsChangeIsNoLack) {
+  const std::string sets = std::string(pitching) + "[parameters]\nMC_PITCHRATE_P = 0.3\n";
+  suite_.add("pitch", sets);
+  const Trace right = answers_of_reference(suite_[0])[0];
+  const auto judged = [&](Trace answers, const std::string& constant) {
+    Reciting port(std::move(answers));
+    port.declarations_.lacks = Lacks::parse(std::vector<std::string>{constant}).value();
+    const auto golden = Goldens(suite_.golden()).open(suite_[0]);
+    return evaluate_case(suite_[0], Rate::hz(100), *golden, port, {}).value();
+  };
+  const VectorResult has = judged(right, "MC_PITCHRATE_P=0.15");
+  EXPECT_EQ(has.verdict, Verdict::unsupported);
+  EXPECT_EQ(has.reason, "MC_PITCHRATE_P is 0.15 in the port, and this vector sets 0.3");
+  EXPECT_THAT(has.has_after_all, testing::ElementsAre("MC_PITCHRATE_P"));
+  Trace other = right;
+  other.samples[9].out.actuator_controls_0.control[1] *= 0.5f;
+  const VectorResult has_not = judged(other, "MC_PITCHRATE_P=0.15");
+  EXPECT_EQ(has_not.reason, has.reason);
+  EXPECT_THAT(has_not.lacking, testing::ElementsAre("MC_PITCHRATE_P"));
+  EXPECT_TRUE(has_not.has_after_all.empty());
+  // With 0.30001 the outputs are nearly the same, so that they show nothing.
+  const VectorResult no_matter = judged(right, "MC_PITCHRATE_P=0.30001");
+  EXPECT_EQ(no_matter.verdict, Verdict::unsupported);
+  EXPECT_TRUE(no_matter.lacking.empty() && no_matter.has_after_all.empty());
+}
+
 // The case is unchanged, but its inputs are not: this happens if the harness changes.
 TEST_F(EvaluateTest, AGoldenForOtherInputsIsAnError) {
   suite_.add_unblessed("pitch", pitching);
