@@ -91,6 +91,15 @@ std::optional<EventDifference> first_gross_difference(const Trace& got, const Tr
   return std::nullopt;
 }
 
+Tolerances gross_tolerances() {
+  Tolerances tolerances;
+  for (const Channel& channel : channels()) {
+    if (!channel.is_output()) continue;
+    tolerances.set(channel.name.substr(4), {floor_of(channel.quantity), 0.5});
+  }
+  return tolerances;
+}
+
 std::optional<EventDifference> first_non_finite_event(const Trace& got, const Trace& want) {
   const auto chosen = float_outputs_of(got, want);
   const std::size_t ticks = want.samples.size();

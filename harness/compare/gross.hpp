@@ -33,6 +33,9 @@ namespace attest {
 // The first value outside these bounds. REQUIRES: both have the same number of ticks.
 std::optional<EventDifference> first_gross_difference(const Trace& got, const Trace& want);
 
+// Tolerances of about these bounds, for values of the same tick only: max(floor, |want| / 2).
+Tolerances gross_tolerances();
+
 // The first NaN or Inf of `got` where `want` is finite at that tick, the tick before and the tick
 // after. REQUIRES: both have the same number of ticks.
 std::optional<EventDifference> first_non_finite_event(const Trace& got, const Trace& want);

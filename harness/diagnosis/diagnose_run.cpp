@@ -1,6 +1,7 @@
 #include "harness/diagnosis/diagnose_run.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -18,13 +19,15 @@ class Laboratory {
   Laboratory(const HostOptions& host, const DiagnosisOptions& options, Level level)
       : host_(host), options_(options), level_(level) {}
 
-  // Runs the port on the vectors that failed; at the level exact also on those that passed, because
-  // their last bits matter.
+  // Runs the port on the vectors that failed; at the levels exact and events also on those that
+  // passed, because their outputs need not agree with the law's at the level numeric.
   void run_port(const std::vector<DiagnosisVector>& vectors);
   // The results are in the order of `vectors`. Empty after an error.
   std::vector<VectorComparison> compare(const std::vector<std::size_t>& vectors,
                                         const std::vector<Hypothesis>& hypotheses, bool observes);
   Evidence evidence();
+  // From now on compares within about the bounds of the level events.
+  void compare_grossly() { is_gross_ = true; }
 
  private:
   template <typename R>
@@ -36,6 +39,7 @@ class Laboratory {
   std::vector<AnsweredVector> vectors_;
   std::vector<LibraryMatches> library_;  // of each vector, at the level exact
   std::size_t failing_ = 0;
+  bool is_gross_ = false;
 };
 
 template <typename R>
@@ -55,7 +59,7 @@ void Laboratory::run_port(const std::vector<DiagnosisVector>& vectors) {
   Jobs<VectorAnswer> jobs;
   std::vector<DiagnosisVector> asked;
   for (const DiagnosisVector& vector : vectors) {
-    if (vector.failed || level_ == Level::exact) asked.push_back(vector);
+    if (vector.failed || level_ != Level::numeric) asked.push_back(vector);
   }
   for (auto begin = asked.begin(); begin != asked.end();) {
     const auto left = static_cast<std::size_t>(asked.end() - begin);
@@ -72,7 +76,7 @@ void Laboratory::run_port(const std::vector<DiagnosisVector>& vectors) {
     library_.push_back(answers[i]->library);
     failing_ += asked[i].failed ? 1 : 0;
   }
-  if (vectors_.empty() || level_ == Level::exact) return;
+  if (vectors_.empty() || level_ != Level::numeric) return;
   for (const DiagnosisVector& vector : vectors) {
     if (vector.failed) continue;
     vectors_.push_back(
@@ -85,7 +89,8 @@ std::vector<VectorComparison> Laboratory::compare(const std::vector<std::size_t>
                                                   bool observes) {
   Jobs<VectorComparison> jobs;
   for (const std::size_t index : vectors) {
-    jobs.push_back(std::make_unique<ComparisonJob>(vectors_[index], hypotheses, observes));
+    jobs.push_back(
+        std::make_unique<ComparisonJob>(vectors_[index], hypotheses, observes, is_gross_));
   }
   auto results = results_of(jobs, host_.in_process);
   if (results.size() != vectors.size()) results.clear();
@@ -135,6 +140,19 @@ std::vector<ParameterChange> parameters_of(const RunResult& run, const Diagnosis
 
 }  // namespace
 
+// At the level events a port may be coarse: then no fault has its values. If the faults leave most
+// failing vectors unexplained, those that have its values within the bounds of the level are
+// searched, too.
+std::optional<Diagnosis> diagnose_grossly(Laboratory& laboratory, std::optional<Diagnosis> found) {
+  if (!found || 2 * found->unexplained <= found->failing) return found;
+  laboratory.compare_grossly();
+  auto gross = diagnose(laboratory.evidence());
+  if (!gross || gross->suspects.empty() || 2 * gross->unexplained > gross->failing) return found;
+  gross->remarks.emplace_back(
+      "a listed fault has the port's values within about the bounds of the level events only");
+  return gross;
+}
+
 std::optional<Diagnosis> diagnose_run(const RunResult& run, const std::vector<SelectedCase>& cases,
                                       const HostOptions& host, const DiagnosisOptions& options) {
   Laboratory laboratory(host, options, run.level);
@@ -142,10 +160,11 @@ std::optional<Diagnosis> diagnose_run(const RunResult& run, const std::vector<Se
   for (DiagnosisVector& vector : vectors) vector.parameters = parameters_of(run, vector);
   laboratory.run_port(vectors);
   std::optional<Diagnosis> diagnosis = diagnose(laboratory.evidence());
+  if (run.level == Level::events) diagnosis = diagnose_grossly(laboratory, std::move(diagnosis));
   std::vector<std::string> remarks = remarks_on(run.results);
   if (!diagnosis && remarks.empty()) return std::nullopt;
   if (!diagnosis) diagnosis.emplace();
-  diagnosis->remarks = std::move(remarks);
+  std::ranges::move(remarks, std::back_inserter(diagnosis->remarks));
   for (const SelectedCase& one : cases) {
     if (one.the_case.id() == diagnosis->specific_case) diagnosis->why = one.the_case.why;
   }

@@ -10,6 +10,7 @@
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/compare/compare.hpp"
+#include "harness/compare/gross.hpp"
 #include "harness/core/error_json.hpp"
 #include "harness/golden/reference.hpp"
 #include "harness/loop/open_loop.hpp"
@@ -228,7 +229,9 @@ Result<VectorComparison> ComparisonJob::run(std::size_t) {
       subject, inputs_for(port, the_case, vector_.vector.rate, vector_.vector.parameters));
   if (!law) return tl::unexpected(law.error());
   const Tolerances tolerances =
-      tolerances_of(the_case, Level::numeric, port.fraction_bits, law->samples.size());
+      is_gross_ && has_events(subject.module)
+          ? gross_tolerances()
+          : tolerances_of(the_case, Level::numeric, port.fraction_bits, law->samples.size());
   const Outputs right = outputs_of(*law);
   const Outputs& got = vector_.outputs ? *vector_.outputs : right;
   const FaultAnswers answers = answers_of(hypotheses_, *law, subject);

@@ -93,10 +93,11 @@ struct Codec<VectorComparison> {
 
 class ComparisonJob final : public Job<VectorComparison> {
  public:
-  // REQUIRES: the arguments outlive this.
+  // `is_gross`: compares units that have events by gross_tolerances(). REQUIRES: the arguments
+  // outlive this.
   ComparisonJob(const AnsweredVector& vector, const std::vector<Hypothesis>& hypotheses,
-                bool observes)
-      : vector_(vector), hypotheses_(hypotheses), observes_(observes) {}
+                bool observes, bool is_gross = false)
+      : vector_(vector), hypotheses_(hypotheses), observes_(observes), is_gross_(is_gross) {}
 
   std::size_t size() const override { return 1; }
   Result<VectorComparison> run(std::size_t task) override;
@@ -104,7 +105,7 @@ class ComparisonJob final : public Job<VectorComparison> {
  private:
   const AnsweredVector& vector_;
   const std::vector<Hypothesis>& hypotheses_;
-  bool observes_;
+  bool observes_, is_gross_;
 };
 
 }  // namespace attest

@@ -140,16 +140,17 @@ std::vector<Search::Candidate> Search::candidates() const {
   return found;
 }
 
-// Drops candidates that deviate on vectors that passed.
+// Drops candidates that deviate on vectors that passed, in outputs in which the port does not. At
+// the level events, a port that passed may deviate in them, too.
 void Search::refute(std::vector<Candidate>& candidates) const {
   std::vector<Hypothesis> hypotheses;
   for (const Candidate& one : candidates) hypotheses.push_back({faults::catalogue()[one.fault]});
   if (passing_.empty() || hypotheses.empty()) return;
   for (const VectorSimilarity& vector : evidence_.compare(passing_, hypotheses)) {
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-      const double contradicted = vector.similarities[i].deviating != 0 ? 1 : 0;
-      candidates[i].score.contradicted += contradicted;
-      candidates[i].score.acting += contradicted;
+      const Similarity& one = vector.similarities[i];
+      candidates[i].score.contradicted += vector.contradicted(one) != 0 ? 1 : 0;
+      candidates[i].score.acting += one.deviating != 0 ? 1 : 0;
     }
   }
   std::erase_if(candidates, [](const Candidate& one) { return one.score.is_contradicted(); });

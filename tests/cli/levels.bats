@@ -18,6 +18,25 @@ open_loop=(--group anti_windup --group modes --group arming --group attitude --g
   has "yaw_rate_integ is moving, expected still within a tick"
 }
 
+@test "at the level events the mistake of a port is named, also if the port is coarse" {
+  run "$ATTEST" run --level events --profile px4-v1.5.5 --rate 250 --exclude '*/flight/*' \
+    --port fault:tpa-missing
+  [ "$status" -eq 1 ]
+  has "\`tpa-missing\`"
+  lacks "within about the bounds"
+  # The C starter with outputs that are multiples of 1/1024, and the wrong sign of the yaw error.
+  cp -r "$SOURCE/controller/starters/c" coarse
+  sed -i -e 's|isfinite(u\[i\]) ? u\[i\]|isfinite(u[i]) ? roundf(u[i] * 1024) / 1024|' \
+    -e 's|\(setpoint.[a-z]* = \)\(c->rates_sp\[.\]\);|\1roundf(\2 * 1024) / 1024;|' coarse/unit.c
+  sed -i 's/dot(x_rp, x_sp)) \* yaw_w/dot(x_rp, x_sp)) * -yaw_w/' coarse/attitude.c
+  cc -O2 -std=c11 -fPIC -shared -I"$SOURCE/controller" -o coarse.so coarse/*.c -lm
+  run "$ATTEST" run --level events --port lib:./coarse.so --profile px4-v1.5.5 --rate 250 \
+    --group attitude,rates,rate_limit
+  [ "$status" -eq 1 ]
+  has "\`yaw-reversed\`"
+  has "a listed fault has the port's values within about the bounds of the level events only"
+}
+
 @test "groups that a port declares not to do are counted apart, never as conformant" {
   run "$ATTEST" run --group tailsitter --group tpa --port "lib:$PORTS/port_no_tailsitter.so"
   [ "$status" -eq 0 ]

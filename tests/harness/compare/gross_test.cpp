@@ -31,6 +31,19 @@ bool agree(const Trace& got, const Trace& want) {
   return compare(got, want, Tolerances(Level::events)).agrees();
 }
 
+TEST(Gross, TolerancesAreTheFloorOrHalfTheSize) {
+  const Tolerances tolerances = gross_tolerances();
+  const auto agrees = [&](const Trace& got, const Trace& want) {
+    return compare(got, want, tolerances).agrees();
+  };
+  const Trace want = constant(2, 0.4, 0.2), small = constant(0, 0, 0);
+  EXPECT_TRUE(agrees(constant(2.9, 0.5, 0.25), want));
+  EXPECT_FALSE(agrees(constant(3.1, 0.4, 0.2), want));
+  EXPECT_FALSE(agrees(constant(2, -0.4, 0.2), want));
+  EXPECT_TRUE(agrees(constant(0.09, 0.04, 0.019), small));
+  EXPECT_FALSE(agrees(constant(0, 0, 0.021), small));
+}
+
 TEST(Gross, AnotherSignOrSizeIsNoCoarseNumber) {
   const Trace want = constant(2, 0.4, 0.2);
   EXPECT_TRUE(agree(constant(2.5, 0.5, 0.25), want));

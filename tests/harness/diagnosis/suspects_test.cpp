@@ -58,6 +58,13 @@ TEST(Suspects, AFaultThatDeviatesWhereThePortIsRightIsOut) {
   }
 }
 
+// At the level events vectors pass in which the port deviates.
+TEST(Suspects, AVectorThatPassesDoesNotRefuteWhereThePortDeviatesToo) {
+  const auto found = HandMade(5, 3).acts(yaw_fault, 0, 8, 0, 7).differs(0, 8, 0, 7).diagnosed();
+  ASSERT_TRUE(found);
+  EXPECT_THAT(suspected(*found), ElementsAre(yaw_fault));
+}
+
 TEST(Suspects, FaultsWithTheSameValuesAreNamedWithTheFirst) {
   const auto found = HandMade(2, 1)
                          .acts(tilt_fault, 0, 2, 0, 3)
