@@ -244,9 +244,9 @@ typedef struct attest_unit {
 /* Extension: const char*, what the port has not, separated by commas: "sticks,mc_att_ctrl_status,
  * MC_YAW_FF=0.5". A word is a feature (`attest list --features`), an output or a topic of outputs
  * in which `*` stands for any text (`attest list --channels`), or a parameter that is a constant,
- * with its value. What is declared is not judged, and the rest is. Cases that do
- * not set a constant run with its value. Those that give it another value set it only to find out
- * whether the port has it after all. The statement lists all words. */
+ * with its value. What is declared is not judged, and the rest is. Cases that do not set a constant
+ * run with its value. Those that give it another value set it only to find out whether the port has
+ * it after all. The statement lists all words. */
 #define ATTEST_EXTENSION_LACKS "attest.lacks"
 
 /* Extension: const char*, the arithmetic of a port in fixed point: "fixed:22" when its signals have
