@@ -27,8 +27,31 @@ Result<void> check_paths(const RunOptions& options, const std::string& suite) {
   return prepare_trace_folder(options.save_traces, suite);
 }
 
-// Without this, a port that hangs costs the time limit for each of thousands of vectors.
-constexpr int most_timeouts_in_a_row = 5;
+// Tells from the results, in the order in which they come, whether the port hangs. Without this, it
+// costs the time limit for each of thousands of vectors.
+class HangWatch {
+ public:
+  static constexpr int most_cases = 5;
+
+  void add(const VectorResult& result) {
+    if (hangs()) return;
+    if (result.verdict != Verdict::timeout) {
+      cases_ = 0;
+      return;
+    }
+    // After a timeout, the other vectors of the process get this verdict without a run. They are
+    // of the same case.
+    const std::string name = result.profile + "/" + result.group + "/" + result.name;
+    if (cases_ == 0 || name != last_) ++cases_;
+    last_ = name;
+  }
+
+  bool hangs() const { return cases_ == most_cases; }
+
+ private:
+  int cases_ = 0;  // in a row that ended by a timeout
+  std::string last_;
+};
 
 // Runs the vectors, until an interrupt or until the port seems to hang.
 void run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
@@ -37,23 +60,20 @@ void run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
   jobs.processes = options.jobs;
   jobs.in_process = options.host.in_process;
   jobs.fail_fast = options.fail_fast;
-  int timeouts = 0;  // in a row
+  HangWatch watch;
   jobs.on_result = [&](const VectorResult& result) {
     progress.add(result);
-    if (timeouts < most_timeouts_in_a_row) {
-      timeouts = result.verdict == Verdict::timeout ? timeouts + 1 : 0;
-    }
+    watch.add(result);
   };
-  const auto hangs = [&] { return timeouts == most_timeouts_in_a_row; };
   jobs.fails = [&](const VectorResult& result) {
     return fails_a_run(result.verdict) && !(plan.expected && plan.expected->expects(result));
   };
-  jobs.stop = [&] { return interrupted() || hangs(); };
+  jobs.stop = [&] { return interrupted() || watch.hangs(); };
   JobResults<VectorResult> outcome = run_jobs(plan.jobs, jobs);
   progress.finish();
-  if (hangs()) {
-    fmt::print(stderr, "attest: note: stopped, because {} vectors in a row ended by a timeout\n",
-               most_timeouts_in_a_row);
+  if (watch.hangs()) {
+    fmt::print(stderr, "attest: note: stopped, because {} cases in a row ended by a timeout\n",
+               HangWatch::most_cases);
   }
   RunResult& run = plan.run;
   run.results = std::move(outcome.results);
@@ -61,7 +81,7 @@ void run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
     return plan.expected && plan.expected->expects(result);
   });
   run.errors = std::move(outcome.errors);
-  run.stopped_early = outcome.stopped_early || hangs() || interrupted();
+  run.stopped_early = outcome.stopped_early || watch.hangs() || interrupted();
   if (auto same = check_port(plan.host); !same) run.errors.push_back(same.error());
 }
 

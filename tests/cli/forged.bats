@@ -59,7 +59,7 @@ is_no_conformance() {
 @test "what a port declares is in its range" {
   judged bits
   [ "$status" -eq 2 ]
-  has '`says.fraction_bits` is -60; it must be from 20 to 32'
+  has '`says.fraction_bits` is -60; it must be from 16 to 32'
   judged step
   [ "$status" -eq 2 ]
   has '`says.fixed_step` is wrong: `-250` is not a rate'

@@ -213,7 +213,7 @@ TASKS
   echo "not a library" >text.so
   run "$ATTEST" run --port ./text.so
   [ "$status" -eq 2 ]
-  has 'a shared library is `lib:./text.so`'
+  has "./text.so: neither a shared library nor an executable file"
   run "$ATTEST" run --port lib:./text.so
   [ "$status" -eq 2 ]
   has "cannot be loaded"

@@ -175,10 +175,10 @@ assert report["stopped_early"] and 0 < len(report["results"]) < 12000, len(repor
 CHECK
 }
 
-@test "a port that hangs ends the run after five timeouts" {
+@test "a port that hangs ends the run after five cases" {
   run timeout 120 "$ATTEST" run "lib:$PORTS/port_hang.so" --timeout 0.3 --jobs 2
   [ "$status" -eq 1 ]
-  has "stopped, because 5 vectors in a row ended by a timeout"
+  has "stopped, because 5 cases in a row ended by a timeout"
   has "stopped early, the rest was not run"
 }
 
