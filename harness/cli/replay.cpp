@@ -53,13 +53,10 @@ class Replay {
     if (auto replayed = replay_all(); !replayed) return report_error(replayed.error());
     if (interrupted()) return exit_interrupted;
     if (auto same = check_port(options_.host); !same) return report_error(same.error());
-    if (options_.files.size() > 1) page_ = html_page(fleet_document(options_.host.port, logs_));
-    const auto page = page_.empty() ? Result<void>() : html->commit(page_);
-    if (!page) return report_error(page.error());
-    const auto written = json->commit(
-        replay_json(options_.host.port, name_of(level_), options_.log_limits, entries_));
-    if (!written) return report_error(written.error());
-    conclude();
+    if (auto written = write_reports(*std::move(json), *std::move(html)); !written) {
+      return report_error(written.error());
+    }
+    if (!entries_.empty()) conclude();
     int status = exit_ok;
     for (const Error& error : errors_) status = report_error(error);
     if (status != exit_ok) return status;
@@ -69,6 +66,17 @@ class Replay {
   }
 
  private:
+  // Without a result, the reports of an earlier command are kept.
+  Result<void> write_reports(AtomicFile json, AtomicFile html) {
+    if (entries_.empty()) return {};
+    if (options_.files.size() > 1) page_ = html_page(fleet_document(options_.host.port, logs_));
+    if (!page_.empty()) {
+      if (auto written = html.commit(page_); !written) return written;
+    }
+    return json.commit(
+        replay_json(options_.host.port, name_of(level_), options_.log_limits, entries_));
+  }
+
   Result<void> replay_all() {
     Jobs<ReplayedFile> jobs;
     for (std::size_t i = 0; i < options_.files.size(); ++i) {
@@ -121,7 +129,7 @@ class Replay {
                              : entries_.size() > options_.files.size() ? "traces and units agree"
                                                                        : "traces and logs agree";
     if (are_logs_ && passed_ > 0) {
-      fmt::print(out_, "Which mistakes would this show? attest faults --log {}\n",
+      fmt::print(out_, "the mistakes that a log shows: attest faults --log {}\n",
                  options_.files.size() == 1 ? options_.files.front() : "FLIGHT.ulg");
     }
     const Verdict verdict = failed_ > 0   ? Verdict::fail
@@ -161,7 +169,8 @@ int replay_command(const ReplayOptions& options, const Globals& globals) {
   if (port->fraction_bits && *level == Level::numeric) {
     arithmetic = fmt::format(" for fixed point with {} fraction bits", *port->fraction_bits);
   }
-  note_interrupts();
+  // With one file, this process does the work itself, and an interrupt may end it at once.
+  if (held.files.size() > 1) note_interrupts();
   return Replay(held, globals, *level, std::move(arithmetic)).run();
 }
 

@@ -138,8 +138,6 @@ std::vector<ParameterChange> parameters_of(const RunResult& run, const Diagnosis
   return parameters;
 }
 
-}  // namespace
-
 // At the level events a port may be coarse: then no fault has its values. If the faults leave most
 // failing vectors unexplained, those that have its values within the bounds of the level are
 // searched, too.
@@ -152,6 +150,8 @@ std::optional<Diagnosis> diagnose_grossly(Laboratory& laboratory, std::optional<
       "a listed fault has the port's values within about the bounds of the level events only");
   return gross;
 }
+
+}  // namespace
 
 std::optional<Diagnosis> diagnose_run(const RunResult& run, const std::vector<SelectedCase>& cases,
                                       const HostOptions& host, const DiagnosisOptions& options) {

@@ -246,6 +246,7 @@ DocumentTable unit_table(const LoggedUnit& unit, const LogResult& result, const 
       table.rows.push_back(row_of(topic, result.single_steps->logged, limits));
       table.below.emplace_back(title_of(topic));
     } else {
+      if (unit.outputs[i].samples == 0) continue;  // the unit never published it
       table.rows.push_back(row_of(topic, unit.outputs[i].samples, limits));
       add_ticks(unit, topic, unit.outputs[i], table.below);
     }

@@ -67,9 +67,10 @@ struct SingleSteps {
 
   std::size_t with_own_setpoint = 0;    // steps whose setpoint the unit made from the sticks
   std::size_t with_given_setpoint = 0;  // the other steps
-  std::uint64_t oldest_us = 0;          // setpoints that were given are younger at their step
-  std::size_t logged = 0;               // outputs in the log: of rates, or of integrals
-  std::vector<LeftOut> left_out;        // the other outputs
+  // Set where the steps are judged: setpoints that were given are younger. 0: no limit is known.
+  std::uint64_t oldest_us = 0;
+  std::size_t logged = 0;         // outputs in the log: of rates, or of integrals
+  std::vector<LeftOut> left_out;  // the other outputs
 };
 
 struct LoggedUnit {

@@ -89,6 +89,11 @@ class Comparable {
     if (needs_steps && log_.module == Module::mc_att_control && !log_.has_every_step) {
       return "it depends on earlier steps, and the log does not have every step";
     }
+    if (topic.paired == 0 && topic.left_out > 0) {
+      return "it depends on earlier steps, or on a mode or setpoint that the log does not have, "
+             "and "
+             "the log does not have every step";
+    }
     if (topic.paired == 0) {
       return fmt::format("for each logged sample of it, the {} or another input is not in the log",
                          log_.step_topic);
@@ -111,9 +116,11 @@ class Comparable {
   }
 
   std::string why_unlike_reference(const TopicAgreement& topic) const {
-    const char* const why =
+    const char* const unknown =
+        log_.module == Module::rate_unit ? "the integral and filters" : "filters and headings";
+    const std::string why =
         log_.begins_in_flight
-            ? "the log begins in flight, where the integral, filters or headings are not known"
+            ? fmt::format("the log begins in flight, where {} are not known", unknown)
             : "the log lacks samples that the unit had, what was assumed does not hold, or another "
               "law flew";
     return fmt::format("only {:.1f}% of the reference's {} are within {:g} of the log: {}",

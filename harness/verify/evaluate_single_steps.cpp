@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -18,6 +19,8 @@ namespace {
 
 // Fewer may agree by chance.
 constexpr std::size_t least_steps = 20;
+
+constexpr std::uint64_t any_age = std::numeric_limits<std::uint64_t>::max();
 
 // The outputs that the law computes from the inputs of the step alone.
 ChannelSet compared_outputs(const LoggedUnit& steps, const std::string& profile) {
@@ -83,9 +86,8 @@ class IntegralInUse {
   std::uint64_t last_us_ = 0;
 };
 
-// Finds the age up to which the setpoints of the log were in use, by the reference: it agrees with
-// the log only where they were. The thrust does not show this where several setpoints have the
-// same.
+// Finds the age up to which the setpoints of the log were in use: the reference agrees with the log
+// only where they were.
 class AgeLimit {
  public:
   void add(std::uint64_t age_us, bool agrees) {
@@ -93,10 +95,12 @@ class AgeLimit {
     ++all_;
   }
 
-  // `most_us` if the reference does not agree with enough steps up to any age.
-  std::uint64_t limit_us(std::uint64_t most_us, double most_unexplained) const {
-    constexpr std::size_t least_part = 5;  // fewer than one in five may agree by chance
-    std::uint64_t limit = most_us;
+  // any_age if there is no age up to which it agrees with all but this part of the steps.
+  std::uint64_t limit_us(double most_unexplained) const {
+    // A setpoint that is published every 4 ms and logged every 20 ms is in use in 1 of 5 steps. If
+    // the reference agrees with fewer, this is by chance.
+    constexpr std::size_t least_part = 5;
+    std::uint64_t limit = any_age;
     std::size_t agree = 0, differ = 0;
     for (const auto& [bin, count] : counts_) {
       agree += count.agree;
@@ -107,14 +111,14 @@ class AgeLimit {
         limit = (bin + 1) * width_us;
       }
     }
-    return std::min(limit, most_us);
+    return limit;
   }
 
  private:
   struct Count {
     std::size_t agree = 0, differ = 0;
   };
-  static constexpr std::uint64_t width_us = 100;
+  static constexpr std::uint64_t width_us = 100;  // a period of a loop is ten times as long
 
   std::map<std::uint64_t, Count> counts_;  // by age, in units of width_us
   std::size_t all_ = 0;
@@ -128,13 +132,10 @@ struct StepKind {
   LogAgreement of_port, of_reference;
 };
 
-// The integral of a port that is not armed and landed is 0, even if the port knows only one of
-// both. The reference stays in the air, because it must tell the increment of the integral.
-void put_on_ground(Trace& inputs) {
-  for (Sample& sample : inputs.samples) {
-    sample.rate_in.vehicle_land_detected = {1, 1};
-    sample.rate_in.updated |= ATTEST_RATE_UPDATED_VEHICLE_LAND_DETECTED;
-  }
+// On the ground the reference would not tell the increment of the integral. It begins each step at
+// 0 nevertheless, because the vehicle is not armed.
+void lift(Trace& inputs) {
+  for (Sample& sample : inputs.samples) sample.rate_in.vehicle_land_detected = {0, 0};
 }
 
 Trace only(const Trace& all, const std::vector<bool>& wanted) {
@@ -159,8 +160,7 @@ class SingleStepJudge {
         limits_(limits),
         parameters_(parameters),
         most_ticks_(most_ticks),
-        compared_(compared_outputs(steps, subject.profile)),
-        oldest_us_(steps.single_steps->oldest_us) {}
+        compared_(compared_outputs(steps, subject.profile)) {}
 
   // Finds out which steps are compared, with the reference alone.
   Result<void> find_steps() {
@@ -170,7 +170,7 @@ class SingleStepJudge {
     IntegralInUse integral(steps_.period_us);
     const auto read = for_each_part_of(
         *steps_.ticks, most_ticks_, [&](const Trace& logged, std::size_t at, bool is_last) {
-          Trace as_flown = reference.inputs(logged, at);
+          Trace as_flown = inputs_of(reference, logged, at);
           has_reference_ = !reference.answer(as_flown, at, is_last);
           if (!has_reference_) return false;
           for (std::size_t i = 0; i < logged.samples.size(); ++i) {
@@ -183,7 +183,8 @@ class SingleStepJudge {
           return true;
         });
     if (!read) return tl::unexpected(read.error());
-    if (has_reference_) oldest_us_ = ages.limit_us(oldest_us_, limits_.most_unexplained);
+    // Half, so that a right port that rounds in another way stays within the whole.
+    if (has_reference_) oldest_us_ = ages.limit_us(limits_.most_unexplained / 2);
     return {};
   }
 
@@ -199,9 +200,8 @@ class SingleStepJudge {
     std::optional<PortFault> fault;
     const auto read = for_each_part_of(
         *steps_.ticks, most_ticks_, [&](const Trace& logged, std::size_t at, bool is_last) {
-          Trace want = logged, as_flown = reference.inputs(logged, at);
+          Trace want = logged, as_flown = inputs_of(reference, logged, at);
           Trace got = judged.inputs(logged, at);
-          if (subject_.module == Module::rate_unit) put_on_ground(got);
           if (has_reference_) reference.answer(as_flown, at, is_last);
           fault = judged.answer(got, at, is_last);
           for (std::size_t i = 0; i < want.samples.size(); ++i) {
@@ -249,11 +249,17 @@ class SingleStepJudge {
                                 older});
     }
     steps.with_given_setpoint = given;
-    steps.oldest_us = oldest_us_;
+    if (oldest_us_ != any_age) steps.oldest_us = oldest_us_;
     return steps;
   }
 
  private:
+  Trace inputs_of(const ReplayedPort& reference, const Trace& logged, std::size_t at) const {
+    Trace inputs = reference.inputs(logged, at);
+    if (subject_.module == Module::rate_unit) lift(inputs);
+    return inputs;
+  }
+
   static std::uint64_t age_of(const Sample& step, const LoggedSetpoint& setpoint) {
     return step.in.timestamp - setpoint.time_us;
   }
@@ -262,8 +268,10 @@ class SingleStepJudge {
     const auto agreement = [&] {
       return LogAgreement(compared_, limits_, LogAgreement::Neighbours::do_not_explain);
     };
-    const auto young =
-        fmt::format("setpoint younger than {:.1f} ms", static_cast<double>(oldest_us_) / 1e3);
+    const std::string young =
+        oldest_us_ == any_age
+            ? "setpoint of any age"
+            : fmt::format("setpoint younger than {:.1f} ms", static_cast<double>(oldest_us_) / 1e3);
     kinds_.push_back({false, young, 0, agreement(), agreement()});
     kinds_.push_back({true, "own setpoint of the step", 0, agreement(), agreement()});
   }
@@ -287,7 +295,11 @@ class SingleStepJudge {
       return fmt::format("the log has all inputs of only {} steps, and at least {} are needed",
                          of_port.paired, least_steps);
     }
-    if (!has_reference_ || of_reference.agrees(limits_)) return "";
+    if (!has_reference_) {
+      return fmt::format("attest does not have {}, so it cannot tell which setpoints were in use",
+                         subject_.profile);
+    }
+    if (of_reference.agrees(limits_)) return "";
     return fmt::format("only {:.1f}% of the reference's {} are within {:g} of the log{}",
                        100 * of_reference.part_within(), of_reference.topic, limits_.within,
                        kind.has_own_setpoint
@@ -319,8 +331,8 @@ class SingleStepJudge {
   const LogParameters& parameters_;
   std::size_t most_ticks_;
   ChannelSet compared_;
-  std::uint64_t oldest_us_;     // setpoints that were given are younger
-  bool has_reference_ = false;  // false: attest does not have the law
+  std::uint64_t oldest_us_ = any_age;  // setpoints that were given are younger
+  bool has_reference_ = false;         // false: attest does not have the law
   std::vector<StepKind> kinds_;
 };
 

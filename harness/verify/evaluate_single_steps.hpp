@@ -9,8 +9,9 @@
 
 namespace attest {
 
-// Gives the single steps to the port and to the reference, and compares both with the log. If the
-// reference does not agree with the log, another law flew, and nothing is judged. The steps with
+// Gives the single steps to the port and to the reference, and compares both with the log. Steps
+// with a setpoint older than the reference agrees with are left out. If the reference does not
+// agree at any age, another law flew, and nothing is judged. The steps with
 // the unit's own setpoint and the others are judged apart: TopicAgreement::condition tells which.
 //
 // The torque is compared without its integral, which comes from the log. The log has the integral

@@ -42,13 +42,13 @@ Sample attitude_step(std::uint64_t time, float given_thrust, float used_thrust) 
 
 LoggedUnit attitude_log() { return log_of(Module::attitude_unit, "vehicle_rates_setpoint"); }
 
-// Every second step has a setpoint of 50 ms, which is no longer in use.
+// Every second step used another setpoint than the last logged one.
 LoggedUnit log_of_given_setpoints() {
   LoggedUnit log = attitude_log();
   for (std::uint64_t i = 1; i <= 40; ++i) {
-    const std::uint64_t time = 100'000 * i, age = i % 2 == 0 ? 4'850 : 50'000;
     const auto thrust = -0.01F * static_cast<float>(i);
-    add(log, attitude_step(time, thrust, i % 2 == 0 ? thrust : -0.9F), {Known::all, time - age});
+    add(log, attitude_step(100'000 * i, thrust, i % 2 == 0 ? thrust : -0.9F),
+        {Known::all, 100'000 * i - 4'850});
   }
   return log;
 }
@@ -66,11 +66,10 @@ std::vector<std::uint64_t> times_of(const LoggedUnit& unit) {
   return times;
 }
 
-TEST(SingleSteps, TheThrustShowsUpToWhichAgeSetpointsWereInUse) {
+TEST(SingleSteps, TheThrustShowsThatAnotherSetpointWasInUse) {
   const LoggedUnit log = log_of_given_setpoints();
   const LoggedUnit steps = single_steps_of(log).value();
   ASSERT_TRUE(steps.single_steps);
-  EXPECT_EQ(steps.single_steps->oldest_us, 4'900u);
   EXPECT_EQ(steps.single_steps->with_given_setpoint, 20u);
   EXPECT_EQ(steps.single_steps->with_own_setpoint, 0u);
   EXPECT_EQ(steps.single_steps->logged, 40u);
@@ -80,27 +79,12 @@ TEST(SingleSteps, TheThrustShowsUpToWhichAgeSetpointsWereInUse) {
   EXPECT_EQ(times_of(steps).front(), 200'000u);
 }
 
-TEST(SingleSteps, AYoungSetpointWithAnotherThrustWasNotInUse) {
-  LoggedUnit log = log_of_given_setpoints();
-  add(log, attitude_step(4'100'000, -0.3F, -0.4F), {Known::all, 4'099'000});
-  for (std::uint64_t i = 0; i < 200; ++i) {  // 1% may be of another setpoint
-    const std::uint64_t time = 4'200'000 + 100'000 * i;
-    const auto thrust = -0.001F * static_cast<float>(i);
-    add(log, attitude_step(time, thrust, thrust), {Known::all, time - 2'000});
-  }
+TEST(SingleSteps, AStepKeepsTheTimeOfItsSetpoint) {
+  const LoggedUnit log = log_of_given_setpoints();
   const LoggedUnit steps = single_steps_of(log).value();
-  EXPECT_EQ(steps.single_steps->oldest_us, 4'900u);
-  EXPECT_EQ(all_of(steps).samples.size(), 220u);
-}
-
-TEST(SingleSteps, AThrustThatNeverChangesLimitsNoAge) {
-  LoggedUnit log = attitude_log();
-  for (std::uint64_t i = 1; i <= 40; ++i) {
-    add(log, attitude_step(100'000 * i, -0.5F, -0.5F), {Known::all, 100'000 * i - 1'000});
-  }
-  const LoggedUnit steps = single_steps_of(log).value();
-  EXPECT_EQ(steps.single_steps->oldest_us, 10'000'000u);
-  EXPECT_EQ(all_of(steps).samples.size(), 40u);
+  Trace part;
+  ASSERT_TRUE(steps.ticks->next_part(1, part));
+  EXPECT_EQ(steps.ticks->setpoints().front(), (LoggedSetpoint{Known::all, 195'150, false}));
 }
 
 TEST(SingleSteps, ASetpointOfTheSticksBecomesAnInput) {
@@ -110,7 +94,7 @@ TEST(SingleSteps, ASetpointOfTheSticksBecomesAnInput) {
     sample.attitude_in.vehicle_control_mode = {1, 0, 0, 0, 1};  // stabilized
     auto& own = sample.attitude_out.vehicle_attitude_setpoint;
     own = {{0.5F, 0.5F, 0.5F, 0.5F}, {0, 0, -0.4F}, 0.25F, has_setpoint};
-    add(log, sample, {Known::if_every_step, 500});
+    add(log, sample, {Known::if_every_step, 0});  // no other module publishes one
   }
   const LoggedUnit steps = single_steps_of(log).value();
   EXPECT_EQ(steps.single_steps->with_own_setpoint, 1u);
@@ -192,6 +176,7 @@ TEST(SingleSteps, ARateUnitIsDisarmedSoThatItsIntegralIsZero) {
   const Trace all = all_of(single_steps_of(log).value());
   ASSERT_EQ(all.samples.size(), 10u);
   EXPECT_EQ(all.samples[0].rate_in.vehicle_control_mode.flag_armed, 0);
+  EXPECT_EQ(all.samples[0].rate_in.vehicle_land_detected.landed, 1);
 }
 
 TEST(SingleSteps, FixedWingFlightIsLeftOut) {
