@@ -14,7 +14,7 @@ namespace attest {
 
 class Rate {
  public:
-  // "250", "333", "1000/3", "62.5" [Hz]. Errors: not a positive number; more than 9 digits; above
+  // "250", "250hz", "1000/3", "62.5" [Hz]. Errors: not a positive number; more than 9 digits; above
   // 1 MHz (the timestamps are microseconds); below 1 mHz.
   static Result<Rate> parse(std::string_view text);
 

@@ -38,9 +38,15 @@ TEST(Rate, ParsesWholeNumbersDecimalsAndFractions) {
   EXPECT_EQ(parsed("1000000"), Rate::hz(1'000'000));
 }
 
+TEST(Rate, ParsesItsUnit) {
+  EXPECT_EQ(parsed("250hz"), Rate::hz(250));
+  EXPECT_EQ(parsed("62.5Hz"), Rate::hz(125, 2));
+}
+
 TEST(Rate, RefusesWhatIsNoPositiveNumber) {
-  for (const char* text : {"", "0", "-5", "+5", "5.", ".", "1/0", "0/1", "/", "1/", "1/2/3", "1e3",
-                           "250hz", " 250", "1.-5", "nan", "inf", "1234567890"}) {
+  for (const char* text :
+       {"",      "0",   "-5", "+5",     "5.",     ".",    "1/0",  "0/1", "/",   "1/",
+        "1/2/3", "1e3", "hz", "250khz", "250hz ", " 250", "1.-5", "nan", "inf", "1234567890"}) {
     EXPECT_THAT(error_of(text), HasSubstr("is not a rate")) << text;
   }
 }
