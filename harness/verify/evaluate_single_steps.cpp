@@ -1,8 +1,6 @@
 #include "harness/verify/evaluate_single_steps.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
@@ -12,6 +10,7 @@
 #include "controller/cascade/profile.hpp"
 #include "harness/core/agreement.hpp"
 #include "harness/golden/reference.hpp"
+#include "harness/verify/integral_in_use.hpp"
 #include "harness/verify/judge.hpp"
 
 namespace attest {
@@ -45,46 +44,6 @@ std::string remembers_setpoints(Module module, const std::string& profile) {
                          profile)
                    : "";
 }
-
-// The integral that a step used, as part of the torque: see evaluate_single_steps.hpp.
-class IntegralInUse {
- public:
-  // `period_us`: of the loop; 0: not known.
-  explicit IntegralInUse(double period_us) : period_us_(period_us) {}
-
-  // Removes it from the torque of the next tick of a log. `reference`: the reference's outputs; its
-  // integral begins each step at 0, so it is the increment after the step.
-  void remove_from(Sample& logged, const Sample& reference) {
-    const auto now = logged.rate_in.vehicle_angular_velocity.timestamp_sample;
-    // The reference's dt (LAW-CASCADE 6.1). The loop's own is not in the log.
-    const double dt_us = std::clamp(static_cast<double>(now - last_us_), 125.0, 20000.0);
-    last_us_ = now;
-    const auto& battery = logged.rate_in.battery_status;
-    const double scale = battery.connected != 0 ? static_cast<double>(battery.scale) : 1;
-    const auto after = integrals(logged), increments = integrals(reference);
-    // The topic has no time of its sample, so it may be that of the next step of a fast loop.
-    const double steps = 1 + (period_us_ > 0 ? std::floor(latest_status_us / period_us_) : 0);
-    for (std::size_t axis = 0; axis < after.size(); ++axis) {
-      const auto [least, most] =
-          std::minmax({after[axis], after[axis] - steps * increments[axis] * period_us_ / dt_us});
-      float& torque = logged.rate_out.vehicle_torque_setpoint.xyz[axis];
-      const double rest = reference.rate_out.vehicle_torque_setpoint.xyz[axis];
-      const double used = std::clamp((static_cast<double>(torque) - rest) / scale, least, most);
-      torque = static_cast<float>(static_cast<double>(torque) - scale * used);
-    }
-  }
-
- private:
-  static std::array<double, 3> integrals(const Sample& sample) {
-    const auto& status = sample.rate_out.rate_ctrl_status;
-    return {status.rollspeed_integ, status.pitchspeed_integ, status.yawspeed_integ};
-  }
-
-  static constexpr double latest_status_us = 2000;  // as the reader pairs outputs with steps
-
-  double period_us_;
-  std::uint64_t last_us_ = 0;
-};
 
 // Finds the age up to which the setpoints of the log were in use: the reference agrees with the log
 // only where they were.

@@ -14,10 +14,7 @@ namespace attest {
 // agree at any age, another law flew, and nothing is judged. The steps with
 // the unit's own setpoint and the others are judged apart: TopicAgreement::condition tells which.
 //
-// The torque is compared without its integral, which comes from the log. The log has the integral
-// after the step, and the torque has the one before. So the integral that the step used is taken to
-// be between the logged one and this one less the reference's increment in the step, where the
-// reference's torque is nearest to the logged one. (An integral at its limit has no increment.)
+// The torque is compared without its integral, which comes from the log (integral_in_use.hpp).
 // Where the yaw torque is filtered (v1.16 and later), it is not compared.
 //
 // Sets topics, single_steps and ticks of `found`; the verdict if the port has a fault; the traces
