@@ -66,10 +66,10 @@ std::vector<Group> groups(const std::string& filter) {
   return out;
 }
 
-// Few turns for the suite and for sweeps: their runs take seconds.
+// Few turns for the suite, for sweeps and for logs: their runs take long.
 int turns(const std::string& floor) {
   if (floor.starts_with("suite/")) return 5;
-  return floor.starts_with("sweep/") ? 11 : 101;
+  return floor.starts_with("sweep/") || floor.starts_with("log/") ? 11 : 101;
 }
 
 }  // namespace
@@ -129,6 +129,8 @@ const std::vector<Pair>& pairs() {
        "at least 0.8x the speed of a bare to_chars loop"},
       {"ULog of 34 MB, read", "ulog/read", "ulog/blocks", 5,
        "at most 5x the time of copying the file in blocks"},
+      {"log of a flight, judged", "log/judged", "log/read", 20,
+       "at most 20x one reading of its messages", 0, 0, "MB/s"},
       {"traces compared, all bits equal", "compare/compare", "compare/memcmp", 3,
        "at most 3x memcmp"},
       {"flight, 250 Hz, MuJoCo at 1 kHz", "flight/250hz", "mj_step/250hz", 1.06,
