@@ -105,8 +105,7 @@ int conclude(const RunResult& run, const Examined& examined, const ReportOptions
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   if (!globals.quiet || code != exit_ok) {
     const std::string summary =
-        render_summary(run, wall.count(), terminal_style(stdout), diagnosis,
-                       options.verbose ? Failures::all : Failures::first_of_each_group);
+        render_summary(run, wall.count(), terminal_style(stdout), diagnosis, options.verbose);
     fmt::print("{}", options.github ? without_commands(summary) : summary);
   }
   if (options.github) write_for_github(run, wall.count(), diagnosis);

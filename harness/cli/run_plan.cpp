@@ -282,6 +282,7 @@ void name_files(const std::vector<SelectedCase>& cases, const SuiteFolder& suite
   for (const SelectedCase& selected : cases) {
     const std::string id = selected.the_case.id();
     run.case_files[id] = path_from_here(selected.the_case.file);
+    run.whys[id] = selected.the_case.why;
     run.golden_files[id] = golden_file(golden, key_of(selected.the_case)).string();
   }
 }

@@ -170,7 +170,8 @@ void add_reports(Command command, ReportOptions& options) {
       .group(option_group::reports);
   command
       .flag("-v,--verbose", options.verbose,
-            "Show every failing case; default: the first of each group")
+            "Show every failing case, tables by rate, and the accuracy of each signal; default: a "
+            "case of each kind of failure")
       .group(option_group::reports);
   for (const ReportFormat& format : report_formats()) {
     command.option(format.option.c_str(), options.files[format.option], format.help)

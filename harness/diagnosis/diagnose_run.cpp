@@ -5,6 +5,8 @@
 #include <memory>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "harness/casefile/stimulus.hpp"
 #include "harness/diagnosis/diagnosis_job.hpp"
 #include "harness/diagnosis/remarks.hpp"
@@ -162,6 +164,12 @@ std::optional<Diagnosis> diagnose_run(const RunResult& run, const std::vector<Se
   std::optional<Diagnosis> diagnosis = diagnose(laboratory.evidence());
   if (run.level == Level::events) diagnosis = diagnose_grossly(laboratory, std::move(diagnosis));
   std::vector<std::string> remarks = remarks_on(run.results);
+  const auto failed = std::ranges::count_if(
+      run.results, [](const VectorResult& result) { return fails_a_run(result.verdict); });
+  if (diagnosis && diagnosis->failing < static_cast<std::size_t>(failed)) {
+    remarks.push_back(
+        fmt::format("{} of the {} failing vectors were examined", diagnosis->failing, failed));
+  }
   if (!diagnosis && remarks.empty()) return std::nullopt;
   if (!diagnosis) diagnosis.emplace();
   std::ranges::move(remarks, std::back_inserter(diagnosis->remarks));

@@ -14,13 +14,12 @@
 namespace attest {
 namespace {
 
-// "9 fail, 2 crash", of the verdicts for which `wanted` is true.
-template <typename Wanted>
-std::string verdict_counts(const RunResult& run, Wanted wanted) {
+// "9 fail, 2 crash"
+std::string failing_verdicts(const RunResult& run) {
   std::vector<std::string> parts;
   for (int i = 0; i < verdict_count; ++i) {
     const auto verdict = static_cast<Verdict>(i);
-    if (run.count(verdict) == 0 || !wanted(verdict)) continue;
+    if (run.count(verdict) == 0 || !fails_a_run(verdict)) continue;
     parts.push_back(fmt::format("{} {}", run.count(verdict), name_of(verdict)));
   }
   return fmt::format("{}", fmt::join(parts, ", "));
@@ -38,6 +37,28 @@ std::string setting(const RunResult& run) {
   std::string out = fmt::format("{}", fmt::join(profiles, ", "));
   if (!out.empty()) out += ", ";
   return fmt::format("{}{}, {}", out, name_of(run.level), counted(run.rates.size(), "rate"));
+}
+
+// "47 need --level exact, 30 need the mixer, 1 skip": what was not judged or expected to fail.
+std::string counted_apart(const RunResult& run) {
+  constexpr std::string_view lacks = "the port has no ", and_extension = " (extension ";
+  std::vector<std::pair<std::string, std::size_t>> needs;
+  for (const VectorResult& result : run.results) {
+    if (result.verdict == Verdict::pass || fails_a_run(result.verdict)) continue;
+    std::string what(name_of(result.verdict));
+    const std::size_t end = result.reason.find(and_extension);
+    if (result.exact_only) {
+      what = "need --level exact";
+    } else if (result.reason.starts_with(lacks) && end != std::string::npos) {
+      what = "need the " + one_line(result.reason.substr(lacks.size(), end - lacks.size()));
+    }
+    auto known = std::ranges::find(needs, what, &std::pair<std::string, std::size_t>::first);
+    if (known == needs.end()) known = needs.emplace(needs.end(), what, 0);
+    ++known->second;
+  }
+  std::vector<std::string> parts;
+  for (const auto& [what, count] : needs) parts.push_back(fmt::format("{} {}", count, what));
+  return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 std::string suspect_text(const Suspect& suspect) {
@@ -77,21 +98,18 @@ Verdict conclusion_of(const RunResult& run) {
 }
 
 std::string conclusion_text(const RunResult& run, std::string_view duration) {
-  std::string out;
-  const auto failed = static_cast<std::size_t>(
-      std::count_if(run.results.begin(), run.results.end(),
-                    [](const VectorResult& result) { return fails_a_run(result.verdict); }));
+  const auto failed = static_cast<std::size_t>(std::ranges::count_if(
+      run.results, [](const VectorResult& result) { return fails_a_run(result.verdict); }));
+  const std::string passed = fmt::format("{} passed", run.count(Verdict::pass));
+  std::string out = passed + ", 0 failed";
   if (failed > 0) {
-    const std::string kinds = verdict_counts(run, fails_a_run);
+    const std::string kinds = failing_verdicts(run);
     const bool only_fail = kinds == fmt::format("{} {}", failed, name_of(Verdict::fail));
-    out += fmt::format("{} failed{}; ", failed, only_fail ? "" : fmt::format(" ({})", kinds));
+    out = fmt::format("{} failed{}, {}", failed, only_fail ? "" : " (" + kinds + ")", passed);
   }
-  if (!run.errors.empty()) out += counted(run.errors.size(), "error") + "; ";
-  out += fmt::format("{} of {} conform", run.count(Verdict::pass),
-                     counted(run.results.size(), "vector"));
-  const std::string apart = verdict_counts(
-      run, [](Verdict verdict) { return verdict != Verdict::pass && !fails_a_run(verdict); });
-  if (!apart.empty()) out += ", " + apart;
+  if (!run.errors.empty()) out = counted(run.errors.size(), "error") + "; " + out;
+  const std::string apart = counted_apart(run);
+  if (!apart.empty()) out += "; " + apart;
   out += fmt::format(" ({}){}", setting(run), duration);
   if (run.stopped_early) out += "; stopped early, the rest was not run";
   return out;

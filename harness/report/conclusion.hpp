@@ -12,8 +12,8 @@ namespace attest {
 // fail: a vector failed, or an error occurred. pass: at least one vector passed. skip: all others.
 Verdict conclusion_of(const RunResult& run);
 
-// "18 failed; 1 of 20 vectors conform, 1 skip (px4-v1.5.5, numeric, 1 rate) in 1.2 s". `duration`
-// is " in 1.2 s", or empty.
+// "18 failed, 1 passed; 1 need --level exact (px4-v1.5.5, numeric, 1 rate) in 1.2 s". `duration` is
+// " in 1.2 s", or empty.
 std::string conclusion_text(const RunResult& run, std::string_view duration = {});
 
 // "first stage to differ: attitude law in 18, mixer in 2": the number of first deviations in each

@@ -212,6 +212,8 @@ std::string failure_text(const VectorResult& result, const RunResult& run) {
                                 reason_text(result));
   out += finding_text(result, run.level);
   const std::string id = result.case_id();
+  if (const auto why = run.whys.find(id); why != run.whys.end() && !why->second.empty())
+    out += fmt::format("  it tests:  {}\n", one_line(why->second));
   if (const auto file = run.case_files.find(id); file != run.case_files.end())
     out += fmt::format("  case:      {}\n", one_line(file->second));
   const auto golden = run.golden_files.find(id);

@@ -55,23 +55,29 @@ Cell cell_of(const Together& all, Wanted wanted) {
           gravest(results), headroom_text(results)};
 }
 
-DocumentTable matrix_of(const Together& results) {
-  std::set<LoopRate> rates;
+// The results that belong to a column, and its header.
+template <typename Key>
+struct Column {
+  std::string header;
+  Key key;
+};
+
+// A table with a row for each group, a column for each key, and the sums. `key_of`: of a result.
+template <typename Key, typename KeyOf>
+DocumentTable table_of(const Together& results, std::string title,
+                       const std::vector<Column<Key>>& columns, KeyOf key_of) {
   std::vector<std::string> groups;
   for (const VectorResult* result : results) {
-    rates.insert(result->rate);
-    const bool is_known = std::find(groups.begin(), groups.end(), result->group) != groups.end();
-    if (!is_known) groups.push_back(result->group);
+    if (std::ranges::find(groups, result->group) == groups.end()) groups.push_back(result->group);
   }
-  DocumentTable table{one_line(results.front()->profile) + ": vectors by group and rate [Hz]",
-                      {"group"}};
-  for (const LoopRate& rate : rates) table.header.push_back(rate.to_string());
+  DocumentTable table{std::move(title), {"group"}};
+  for (const Column<Key>& column : columns) table.header.push_back(column.header);
   table.header.emplace_back("total");
   const auto add_row = [&](const std::string& name, auto is_in_row) {
     std::vector<Cell> row = {name};
-    for (const LoopRate& rate : rates) {
+    for (const Column<Key>& column : columns) {
       row.push_back(cell_of(results, [&](const VectorResult& result) {
-        return is_in_row(result) && result.rate == rate;
+        return is_in_row(result) && key_of(result) == column.key;
       }));
     }
     row.push_back(cell_of(results, is_in_row));
@@ -82,6 +88,15 @@ DocumentTable matrix_of(const Together& results) {
   }
   add_row("total", [](const VectorResult&) { return true; });
   return table;
+}
+
+DocumentTable matrix_of(const Together& results) {
+  std::set<LoopRate> rates;
+  for (const VectorResult* result : results) rates.insert(result->rate);
+  std::vector<Column<LoopRate>> columns;
+  for (const LoopRate& rate : rates) columns.push_back({rate.to_string(), rate});
+  return table_of(results, one_line(results.front()->profile) + ": vectors by group and rate [Hz]",
+                  columns, [](const VectorResult& result) { return result.rate; });
 }
 
 }  // namespace
@@ -95,6 +110,19 @@ std::vector<DocumentTable> matrices_of(const RunResult& run) {
   std::vector<DocumentTable> tables;
   for (const auto& profile : profiles) tables.push_back(matrix_of(profile));
   return tables;
+}
+
+DocumentTable matrix_by_profile(const RunResult& run) {
+  std::vector<Column<std::string>> columns;
+  Together results;
+  for (const VectorResult& result : run.results) {
+    results.push_back(&result);
+    if (std::ranges::find(columns, result.profile, &Column<std::string>::key) == columns.end()) {
+      columns.push_back({one_line(result.profile), result.profile});
+    }
+  }
+  return table_of(results, "vectors by group and profile", columns,
+                  [](const VectorResult& result) { return result.profile; });
 }
 
 }  // namespace attest

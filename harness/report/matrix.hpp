@@ -46,4 +46,7 @@ std::vector<Together> grouped(const RunResult& run, Wanted wanted, Equal equal) 
 // differs in bits.
 std::vector<DocumentTable> matrices_of(const RunResult& run);
 
+// The same for the whole run: a column for each profile, all its rates together.
+DocumentTable matrix_by_profile(const RunResult& run);
+
 }  // namespace attest

@@ -23,7 +23,8 @@ Progress::Options Progress::on_stderr(bool quiet) {
   const char* term = std::getenv("TERM");
   const bool moves_cursor = term != nullptr && std::string_view(term) != "dumb";
   Options options;
-  options.visible = !quiet && moves_cursor && isatty(fileno(stderr)) != 0;
+  const bool is_terminal = moves_cursor && isatty(fileno(stderr)) != 0;
+  if (!quiet) options.form = is_terminal ? Form::drawn : Form::lines;
   if (const int width = terminal_style(stderr).width; width > 0) options.width = width;
   return options;
 }
@@ -38,11 +39,23 @@ void Progress::add(bool failed, const std::string& latest, Clock::time_point now
   if (begin_ == Clock::time_point{}) {
     begin_ = now;
     done_before_ = done_;
+    latest_ = now;
   }
-  if (!options_.visible || (drawn_ && now - last_drawn_ < redraw_interval)) return;
-  draw(latest, now);
-  drawn_ = true;
-  last_drawn_ = now;
+  if (options_.form == Form::drawn && (!drawn_ || now - latest_ >= redraw_interval)) {
+    draw(latest, now);
+    drawn_ = true;
+    latest_ = now;
+  }
+  if (options_.form == Form::lines && now - latest_ >= line_interval) {
+    write_line(now);
+    latest_ = now;
+  }
+}
+
+void Progress::write_line(Clock::time_point now) const {
+  const std::string failed = failed_ > 0 ? fmt::format(", {} failed", failed_) : "";
+  fmt::print(options_.stream, "attest: {} of {} done{}{}\n", done_, total_, failed, speed(now));
+  std::fflush(options_.stream);
 }
 
 std::string Progress::speed(Clock::time_point now) const {
@@ -51,8 +64,8 @@ std::string Progress::speed(Clock::time_point now) const {
   const double rate = static_cast<double>(done_ - done_before_) / seconds;
   const double left = static_cast<double>(total_ - done_) / rate;
   constexpr double long_s = 120;
-  return left > long_s ? fmt::format("  {:.3g}/s, {:.0f} min left", rate, left / 60)
-                       : fmt::format("  {:.3g}/s, {:.0f} s left", rate, left);
+  return left > long_s ? fmt::format(", {:.3g}/s, {:.0f} min left", rate, left / 60)
+                       : fmt::format(", {:.3g}/s, {:.0f} s left", rate, left);
 }
 
 void Progress::draw(const std::string& latest, Clock::time_point now) const {

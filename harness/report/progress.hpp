@@ -1,4 +1,5 @@
-// One line with the progress of a run, on a terminal only.
+// The progress of a run on stderr: one line that is drawn again on a terminal, else a line now and
+// then, so that the log of a long run shows that it goes on.
 #pragma once
 
 #include <chrono>
@@ -16,14 +17,16 @@ class Progress {
  public:
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::milliseconds redraw_interval{50};
+  static constexpr std::chrono::seconds line_interval{30};
 
+  enum class Form { none, drawn, lines };
   struct Options {
     std::FILE* stream = stderr;
-    bool visible = false;
+    Form form = Form::none;
     int width = 80;  // columns of the terminal
   };
 
-  // Visible when stderr is a terminal that can move its cursor and `quiet` is false.
+  // Drawn if stderr is a terminal that can move its cursor, else lines; none if `quiet`.
   static Options on_stderr(bool quiet);
 
   // `done`: how many of `total` were done before.
@@ -33,14 +36,16 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // Counts one more result. Draws at most once per redraw_interval. From the second drawing on, the
-  // line has the results per second and the remaining time.
+  // Counts one more result. Draws at most once per redraw_interval; writes a line at most once per
+  // line_interval, the first one after that time. From the second drawing on, the line has the
+  // results per second and the remaining time.
   void add(const VectorResult& result, Clock::time_point now = Clock::now());
   void add(bool failed, const std::string& latest, Clock::time_point now = Clock::now());
   void finish();
 
  private:
   void draw(const std::string& latest, Clock::time_point now) const;
+  void write_line(Clock::time_point now) const;
   std::string speed(Clock::time_point now) const;
 
   Options options_;
@@ -49,7 +54,7 @@ class Progress {
   std::size_t done_before_;  // after the first add(), when the time count begins
   std::size_t failed_ = 0;
   bool drawn_ = false;
-  Clock::time_point last_drawn_{}, begin_{};
+  Clock::time_point latest_{}, begin_{};  // of what was drawn or written
 };
 
 }  // namespace attest

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <set>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -55,32 +55,79 @@ std::string failure(const Together& group, const RunResult& run, TerminalStyle s
     out += fmt::format("  also {}: --filter {}\n", others(group),
                        shell_quoted(one_line(shown.case_id()) + "@*"));
   }
-  return out + "\n";
+  return out;
 }
 
-std::string group_and_verdict(const VectorResult& result) {
-  return fmt::format("{}/{} {}", result.profile, result.group, name_of(result.verdict));
+// Failures without a deviation come first, because a crash hides what else is wrong. The others
+// follow in the order of the law. What passed unexpectedly is last.
+int order_of(const VectorResult& result) {
+  if (result.verdict == Verdict::xpass) return 1 + static_cast<int>(stage_count);
+  return result.first ? 1 + static_cast<int>(stage_of(*result.first)) : 0;
 }
 
-std::string failures(const RunResult& run, TerminalStyle style, Failures shown) {
-  const auto cases = grouped(
+// Failing vectors of one case that have one verdict.
+std::vector<Together> failing_cases(const Together& vectors) {
+  std::vector<Together> cases;
+  for (const VectorResult* result : vectors) {
+    const auto known = std::ranges::find_if(cases, [&](const Together& one) {
+      return one.front()->verdict == result->verdict && one.front()->case_id() == result->case_id();
+    });
+    if (known == cases.end())
+      cases.push_back({result});
+    else
+      known->push_back(result);
+  }
+  return cases;
+}
+
+// "12 in attitude, 3 in modes"
+std::string by_group(const std::vector<Together>& cases) {
+  std::vector<std::pair<std::string, std::size_t>> counts;
+  for (const Together& one : cases) {
+    const std::string group = one_line(one.front()->group);
+    auto known = std::ranges::find(counts, group, &std::pair<std::string, std::size_t>::first);
+    if (known == counts.end()) known = counts.emplace(counts.end(), group, 0);
+    ++known->second;
+  }
+  std::vector<std::string> parts;
+  for (const auto& [group, count] : counts) parts.push_back(fmt::format("{} in {}", count, group));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+// Failures with one verdict and one first stage, or one reason: the case that tells most, and where
+// the others are.
+std::string finding(const Together& vectors, const RunResult& run, TerminalStyle style,
+                    const std::string& specific_case) {
+  std::vector<Together> cases = failing_cases(vectors);
+  const auto shown = std::ranges::find_if(
+      cases, [&](const Together& one) { return one.front()->case_id() == specific_case; });
+  if (shown != cases.end()) std::iter_swap(cases.begin(), shown);
+  std::string out = failure(cases.front(), run, style);
+  cases.erase(cases.begin());
+  if (cases.empty()) return out + "\n";
+  return out +
+         fmt::format("  {}, too: {}\n\n", counted(cases.size(), "other case"), by_group(cases));
+}
+
+std::string failures(const RunResult& run, TerminalStyle style, const std::string& specific_case,
+                     bool verbose) {
+  std::vector<Together> findings = grouped(
       run, [](const VectorResult& result) { return fails_a_run(result.verdict); },
       [](const VectorResult& a, const VectorResult& b) {
-        return a.verdict == b.verdict && a.case_id() == b.case_id();
+        return a.verdict == b.verdict && order_of(a) == order_of(b) &&
+               (a.first || a.reason == b.reason);
       });
+  std::ranges::stable_sort(findings, {},
+                           [](const Together& one) { return order_of(*one.front()); });
   std::string out;
-  std::size_t hidden = 0;
-  std::set<std::string> known;
-  for (const Together& vectors : cases) {
-    const bool is_first = known.insert(group_and_verdict(*vectors.front())).second;
-    if (shown == Failures::all || (is_first && known.size() <= failures_shown))
-      out += failure(vectors, run, style);
-    else
-      hidden += vectors.size();
+  if (verbose) {
+    for (const Together& vectors : findings) {
+      for (const Together& one : failing_cases(vectors)) out += failure(one, run, style) + "\n";
+    }
+    return out;
   }
-  if (hidden > 0) {
-    out += fmt::format("and {}; --verbose shows all, --json and --junit write all to a file\n\n",
-                       counted(hidden, "more failing vector"));
+  for (std::size_t i = 0; i < std::min(findings.size(), findings_shown); ++i) {
+    out += finding(findings[i], run, style, specific_case);
   }
   return out;
 }
@@ -189,17 +236,59 @@ std::string errors(const RunResult& run, TerminalStyle style) {
   return out.empty() ? out : out + "\n";
 }
 
-std::string matrices(const RunResult& run, TerminalStyle style) {
+// The rows of groups without a failure; the last row, with the sums, stays.
+void leave_out_passing_groups(DocumentTable& table) {
+  const auto passes = [](const std::vector<Cell>& row) {
+    return !fails_a_run(*row.back().verdict);
+  };
+  const auto sums = std::prev(table.rows.end());
+  const auto left_out = std::ranges::remove_if(table.rows.begin(), sums, passes);
+  if (left_out.empty()) return;
+  table.caption += "; groups without a failure are left out";
+  table.rows.erase(left_out.begin(), sums);
+}
+
+std::string matrices(const RunResult& run, TerminalStyle style, bool verbose) {
   std::string out;
-  for (DocumentTable& table : matrices_of(run)) {
+  std::vector<DocumentTable> tables = matrices_of(run);
+  if (tables.size() > 1 && !verbose) tables = {matrix_by_profile(run)};
+  if (run.failed() && !verbose) {
+    for (DocumentTable& table : tables) leave_out_passing_groups(table);
+  }
+  for (DocumentTable& table : tables) {
     for (std::vector<Cell>& row : table.rows) {
       for (Cell& cell : row) cell.small.clear();
     }
     out += render_text(table, style) + "\n";
   }
-  if (const auto accuracy = accuracy_of(run)) out += render_text(*accuracy, style) + "\n";
   const bool is_plain = run.count(Verdict::pass) == run.results.size();
   return is_plain ? out : out + "n/m: n of m vectors passed; +k: k counted apart\n\n";
+}
+
+std::string accuracy(const RunResult& run, TerminalStyle style) {
+  const auto table = accuracy_of(run);
+  return table ? render_text(*table, style) + "\n" : "";
+}
+
+// "failed in 12 cases: px4-v1.5.5/tpa/by_pitch, ... and 4 more". One name for all profiles.
+std::string failed_cases(const RunResult& run) {
+  constexpr std::size_t named = 8;
+  std::vector<std::string> ids, names;
+  for (const VectorResult& result : run.results) {
+    if (!fails_a_run(result.verdict)) continue;
+    const std::string name = one_line(result.group + "/" + result.name);
+    if (std::ranges::find(names, name) != names.end()) continue;
+    names.push_back(name);
+    if (names.size() <= named) ids.push_back(one_line(result.case_id()));
+  }
+  if (names.empty()) return "";
+  std::string out =
+      fmt::format("failed in {}: {}", counted(names.size(), "case"), fmt::join(ids, ", "));
+  if (names.size() > named) out += fmt::format(" and {} more", names.size() - named);
+  return out +
+         "\n  --verbose shows all of them, --html FILE with plots; --json FILE and --junit FILE "
+         "have "
+         "all\n";
 }
 
 std::string verdict_line(const RunResult& run, double wall_s, TerminalStyle style) {
@@ -240,20 +329,20 @@ std::string painted(std::string_view text, Colour colour, TerminalStyle style) {
 }
 
 std::string render_summary(const RunResult& run, double wall_s, TerminalStyle style,
-                           const std::optional<Diagnosis>& diagnosis, Failures shown) {
-  const std::string verdict = verdict_line(run, wall_s, style);
-  std::string out = header(run) + verdict;
-  if (diagnosis) out += diagnosis_text(*diagnosis);
+                           const std::optional<Diagnosis>& diagnosis, bool verbose) {
+  std::string out = header(run) + "\n";
+  out += matrices(run, style, verbose);
+  out += counted_apart(run);
+  if (verbose) out += accuracy(run, style);
+  if (verbose || !run.failed()) out += headroom(run);
+  out += failures(run, style, diagnosis ? diagnosis->specific_case : "", verbose);
+  out += errors(run, style);
+  out += failed_cases(run);
   if (const std::string stages = first_stages(run); !stages.empty()) out += stages + "\n";
+  if (diagnosis) out += diagnosis_text(*diagnosis);
   out += conformance(run);
   if (const std::string lacks = needless_lacks_text(run); !lacks.empty()) out += lacks + "\n";
-  out += "\n";
-  out += errors(run, style);
-  out += matrices(run, style);
-  out += failures(run, style, shown);
-  out += counted_apart(run);
-  out += headroom(run);
-  return broken_at(style.width, out + verdict);
+  return broken_at(style.width, out + verdict_line(run, wall_s, style));
 }
 
 }  // namespace attest

@@ -30,30 +30,26 @@ bool wants_colour(bool is_terminal, const char* no_color, const char* term);
 enum class Colour { none, bold, green, yellow, red };
 std::string painted(std::string_view text, Colour colour, TerminalStyle style);
 
-// Limits of the summary; failures_shown applies without --verbose. The report files have all
-// failures and errors.
-inline constexpr std::size_t failures_shown = 20;
+// Limits of the summary. The report files have all failures and errors.
+inline constexpr std::size_t findings_shown = 4;
 inline constexpr std::size_t errors_shown = 20;
 
-// The failures that the summary shows.
-enum class Failures {
-  first_of_each_group,  // the first case of each group and verdict, at most failures_shown
-  all,
-};
-
-// First the conclusion: the port, the verdict line, the diagnosis, the stages that differ first,
-// the conformance statement, errors. Then the details: the table of groups and rates; the failures,
-// one block for the vectors of a case with the same verdict; the results that are counted apart
-// (unsupported, skip, xfail) with their reasons; the tightest headroom (numeric level). The last
-// line repeats the verdict line, because the beginning of a long text is not visible on a terminal:
+// First the details: the port; the table of groups and rates, or of groups and profiles if there
+// are several; the results that are counted apart (unsupported, skip, xfail) with their reasons;
+// the tightest headroom (numeric level); the findings, in the order of the law. A finding is a
+// verdict and the stage that deviates first, and is shown by one case. The end of a long text is
+// what a terminal shows, so then comes what matters: errors, the names of the failed cases, the
+// stages that differ first, the diagnosis, the conformance statement, and the verdict:
 //
-//     PASS 715 of 715 vectors conform (px4-v1.5.5, exact, 11 rates) in 1.2 s
+//     PASS 715 passed, 0 failed (px4-v1.5.5, exact, 11 rates) in 1.2 s
 //
 // PASS: no vector failed, no error occurred, and at least one vector passed. NONE: no failure and
 // no error, but no vector passed. FAIL: all other runs. `wall_s` is the time of the whole run.
 // Lines are broken at the width of the terminal, except commands to copy. Ends with a newline.
+//
+// `verbose` shows every failing case, a table by rate for each profile, the accuracy, and the
+// headroom also if a vector failed.
 std::string render_summary(const RunResult& run, double wall_s, TerminalStyle style,
-                           const std::optional<Diagnosis>& diagnosis = {},
-                           Failures shown = Failures::first_of_each_group);
+                           const std::optional<Diagnosis>& diagnosis = {}, bool verbose = false);
 
 }  // namespace attest

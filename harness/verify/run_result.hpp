@@ -49,6 +49,7 @@ struct RunResult {
   // For people and services that open the files: paths from the folder where attest was started.
   std::map<std::string, std::string> case_files;    // "profile/group/name" -> the case file
   std::map<std::string, std::string> golden_files;  // the same -> the file of its golden
+  std::map<std::string, std::string> whys;          // the same -> Case::why
   std::string cases_version = "unversioned", golden_version = "unversioned";  // of the suite
   std::string suite_reference;          // the port that made the goldens; empty: attest's reference
   std::string suite_sha256;             // of the suite's content

@@ -18,7 +18,9 @@ class ProgressTest : public testing::Test {
   void SetUp() override { ASSERT_NE(stream_, nullptr); }
   void TearDown() override { std::fclose(stream_); }
 
-  Progress::Options visible(int width = 120) const { return {stream_, true, width}; }
+  Progress::Options visible(int width = 120) const {
+    return {stream_, Progress::Form::drawn, width};
+  }
 
   std::string written() const {
     std::string out;
@@ -30,13 +32,13 @@ class ProgressTest : public testing::Test {
   }
 
   std::FILE* stream_ = std::tmpfile();
-  Progress::Clock::time_point start_{};
+  Progress::Clock::time_point start_{std::chrono::seconds(1)};
   VectorResult result_ = passed("attitude", "roll_30", Rate::hz(250));
 };
 
 TEST_F(ProgressTest, IsSilentUnlessVisible) {
   {
-    Progress progress(2, {stream_, false, 80});
+    Progress progress(2, {stream_, Progress::Form::none, 80});
     progress.add(result_);
   }
   EXPECT_EQ(written(), "");
@@ -59,14 +61,14 @@ TEST_F(ProgressTest, CountsEveryResultButDrawsAtMostTwentyTimesASecond) {
   const std::string text = written();
   const auto drawn = std::count(text.begin(), text.end(), '[') / 2;  // one in the erase code
   EXPECT_EQ(drawn, 20);
-  EXPECT_THAT(text, HasSubstr(" 951/1000 "));
+  EXPECT_THAT(text, HasSubstr(" 951/1000, "));
 }
 
 TEST_F(ProgressTest, TellsTheSpeedAndTheRemainingTime) {
   Progress progress(1000, visible(), 400);  // 400 were done before
   for (int i = 0; i <= 10; ++i)
     progress.add(false, "sample 7", start_ + milliseconds(1000 * i + 1));
-  EXPECT_THAT(written(), HasSubstr(" 411/1000  1/s, 10 min left  sample 7"));
+  EXPECT_THAT(written(), HasSubstr(" 411/1000, 1/s, 10 min left  sample 7"));
 }
 
 TEST_F(ProgressTest, CountsFailures) {
@@ -88,7 +90,19 @@ TEST_F(ProgressTest, SurvivesMoreResultsThanAnnounced) {
   EXPECT_THAT(written(), HasSubstr("[########################] 1/0 "));
 }
 
-TEST(ProgressOptions, QuietIsInvisible) { EXPECT_FALSE(Progress::on_stderr(true).visible); }
+TEST_F(ProgressTest, AFileGetsALineEvery30Seconds) {
+  Progress progress(1000, {stream_, Progress::Form::lines, 80});
+  for (int i = 0; i <= 65; ++i) {
+    progress.add(i == 40, "latest", start_ + std::chrono::seconds(i));
+  }
+  EXPECT_EQ(written(),
+            "attest: 31 of 1000 done, 1/s, 16 min left\n"
+            "attest: 61 of 1000 done, 1 failed, 1/s, 16 min left\n");
+}
+
+TEST(ProgressOptions, QuietIsInvisible) {
+  EXPECT_EQ(Progress::on_stderr(true).form, Progress::Form::none);
+}
 
 }  // namespace
 }  // namespace attest
