@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "harness/cli/conclude.hpp"
+#include "harness/cli/last_run.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/plotted_traces.hpp"
 #include "harness/cli/run_plan.hpp"
@@ -85,7 +86,13 @@ void run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
   if (auto same = check_port(plan.host); !same) run.errors.push_back(same.error());
 }
 
-int run_command(const RunOptions& options, const Globals& globals) {
+int run_command(const RunOptions& given, const Globals& globals) {
+  RunOptions options = given;
+  if (options.last_failed) {
+    auto report = last_failed_run();
+    if (!report) return report_error(report.error());
+    options.select.rerun_failed = *std::move(report);
+  }
   // Goldens of earlier runs may be there.
   if (!options.save_traces.empty()) globals.barrier->hidden.push_back(options.save_traces);
   const auto begin = std::chrono::steady_clock::now();
@@ -108,6 +115,7 @@ int run_command(const RunOptions& options, const Globals& globals) {
     if (run.results.empty()) return report_error({"interrupted; no vector was run"});
     fmt::print(stderr, "attest: interrupted; the reports have the vectors that were run\n");
     forget_interrupt();
+    remember_last_run(run);
     ReportOptions without_diagnosis = options.report;
     without_diagnosis.diagnose = false;
     conclude(run, {plan->cases, plan->host, options.jobs, {}}, without_diagnosis,
@@ -117,6 +125,7 @@ int run_command(const RunOptions& options, const Globals& globals) {
   const bool is_complete = options.timing.empty() && options.select.selects_all() &&
                            !run.stopped_early && run.errors.empty();
   if (plan->expected) plan->expected->apply(is_complete, run);
+  remember_last_run(run);
   traces->save(*plan, *suite, options);
   if (!options.save_traces.empty() && run.failed()) {
     fmt::print(stderr, "attest: note: the traces of the failing vectors are in {}\n",
@@ -192,6 +201,13 @@ void add_run(const CommandLine& line) {
               "and --param as in that run")
       .type("REPORT")
       .group(option_group::selection);
+  command
+      .flag(
+          "--last-failed", options->last_failed,
+          "Run only the vectors that failed in the last run in this folder; give the same --port, "
+          "--level and --param as in that run")
+      .group(option_group::selection)
+      .excludes(command.find("--rerun-failed"));
   command
       .option("--timing", options->timing,
               "Run only the flight of this file from --record-timing, at the recorded times")

@@ -99,12 +99,22 @@ DocumentTable matrix_of(const Together& results) {
                   columns, [](const VectorResult& result) { return result.rate; });
 }
 
-}  // namespace
-
-std::vector<DocumentTable> matrices_of(const RunResult& run) {
+// The results of each profile of which a vector was judged.
+std::vector<Together> judged_profiles(const RunResult& run) {
   std::vector<Together> profiles = grouped(
       run, [](const VectorResult&) { return true; },
       [](const VectorResult& a, const VectorResult& b) { return a.profile == b.profile; });
+  std::erase_if(profiles, [](const Together& profile) {
+    return std::ranges::none_of(
+        profile, [](const VectorResult* result) { return is_judged(result->verdict); });
+  });
+  return profiles;
+}
+
+}  // namespace
+
+std::vector<DocumentTable> matrices_of(const RunResult& run) {
+  std::vector<Together> profiles = judged_profiles(run);
   std::stable_partition(profiles.begin(), profiles.end(),
                         [](const auto& profile) { return fails_a_run(gravest(profile)); });
   std::vector<DocumentTable> tables;
@@ -115,11 +125,10 @@ std::vector<DocumentTable> matrices_of(const RunResult& run) {
 DocumentTable matrix_by_profile(const RunResult& run) {
   std::vector<Column<std::string>> columns;
   Together results;
-  for (const VectorResult& result : run.results) {
-    results.push_back(&result);
-    if (std::ranges::find(columns, result.profile, &Column<std::string>::key) == columns.end()) {
-      columns.push_back({one_line(result.profile), result.profile});
-    }
+  for (const Together& profile : judged_profiles(run)) {
+    const std::string& name = profile.front()->profile;
+    columns.push_back({one_line(name), name});
+    results.insert(results.end(), profile.begin(), profile.end());
   }
   return table_of(results, "vectors by group and profile", columns,
                   [](const VectorResult& result) { return result.profile; });

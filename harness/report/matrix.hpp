@@ -30,9 +30,10 @@ std::vector<Together> grouped(const RunResult& run, Wanted wanted, Equal equal) 
   return groups;
 }
 
-// A table for each profile; profiles with a failure come first. It has a row for each group, and a
-// last row with the sums; a column for each rate at which the profile has results, ascending, and a
-// last column with the sums. A cell has the number of vectors that passed:
+// A table for each profile of which a vector was judged; profiles with a failure come first. It has
+// a row for each group, and a last row with the sums; a column for each rate at which the profile
+// has results, ascending, and a last column with the sums. A cell has the number of vectors that
+// passed:
 //
 //     px4-v1.5.5: vectors by group and rate [Hz]
 //       group       100    250  1000/3    total

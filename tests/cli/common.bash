@@ -4,6 +4,7 @@ setup() {
   cd "$BATS_TEST_TMPDIR"
   unset NO_COLOR ATTEST_SUITE
   export SOURCE_DATE_EPOCH=1774915200 # reports do not depend on the day
+  export XDG_STATE_HOME=$BATS_TEST_TMPDIR/state
 }
 
 # A suite of one quick case, without golden, in ./suite.

@@ -208,6 +208,26 @@ refused() {
   refused "has impossible bounds of the metric"
 }
 
+@test "what failed in the last run in a folder is run again" {
+  run "$ATTEST" run --last-failed
+  [ "$status" -eq 2 ]
+  has "no vector failed in the last \`attest run\` in this folder"
+  run "$ATTEST" run "${selected[@]}" --port fault:tpa-missing
+  failed=$(grep -oE 'FAIL [0-9]+ failed' <<<"$output")
+  run "$ATTEST" run --last-failed --port fault:tpa-missing
+  [ "$status" -eq 1 ]
+  has "$failed, 0 passed"
+  mkdir other
+  cd other
+  run "$ATTEST" run --last-failed
+  [ "$status" -eq 2 ]
+  cd ..
+  run "$ATTEST" run --last-failed
+  [ "$status" -eq 0 ]
+  run "$ATTEST" run --last-failed
+  [ "$status" -eq 2 ]
+}
+
 @test "what failed in a report is run again" {
   run "$ATTEST" run "${selected[@]}" --port fault:tpa-missing --json all.json
   failed=$(grep -c '"verdict": "fail"' all.json)

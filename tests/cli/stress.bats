@@ -86,10 +86,10 @@ CHECK
       --json "$PWD/s.json" >out.txt 2>err.txt 3>&- &
     pid=$!
     for _ in $(seq 300); do
-      grep -q "of 600 s" err.txt && break
+      grep -Eq "[1-9][0-9.]* of 600 s" err.txt && break
       sleep 0.2
     done
-    grep -q "of 600 s" err.txt
+    grep -Eq "[1-9][0-9.]* of 600 s" err.txt
     kill -KILL $pid
     wait $pid || true
     nothing_is_left
@@ -215,7 +215,7 @@ CHECK
   "$ATTEST" stress --rates 100,250 --duration 600 "${open[@]}" --json s.json >out.txt 2>err.txt &
   pid=$!
   for _ in $(seq 100); do
-    grep -q "of 600 s" err.txt && break
+    grep -Eq "[1-9][0-9.]* of 600 s" err.txt && break
     sleep 0.2
   done
   kill -INT $pid

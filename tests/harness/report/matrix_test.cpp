@@ -92,8 +92,17 @@ TEST(Matrix, AVectorThatWasNotJudgedDoesNotHideOneThatPassed) {
   RunResult run = passing_run();
   run.results.front().verdict = Verdict::skip;
   EXPECT_EQ(cell_of(run, 0, 1).verdict, Verdict::pass);
+}
+
+// As if the port has another profile: its vectors are a line of what is counted apart.
+TEST(Matrix, AProfileOfWhichNothingWasJudgedHasNoTable) {
+  RunResult run = passing_run();
   for (VectorResult& result : run.results) result.verdict = Verdict::skip;
-  EXPECT_EQ(cell_of(run, 0, 1).verdict, Verdict::skip);
+  EXPECT_THAT(matrices_of(run), IsEmpty());
+  run.results.push_back(passed("attitude", "roll_30", Rate::hz(250)));
+  run.results.back().profile = "px4-v1.3.4";
+  EXPECT_EQ(matrices_of(run).size(), 1U);
+  EXPECT_THAT(matrix_by_profile(run).header, testing::ElementsAre("group", "px4-v1.3.4", "total"));
 }
 
 TEST(Matrix, TheHeadroomIsTheSmallestOfThoseThatPassed) {
