@@ -17,6 +17,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -131,6 +132,8 @@ struct Plot {
   std::vector<PlotMark> marks = {};
   PlotShape shape = PlotShape::line;
   bool logarithmic_x = false, logarithmic_y = false;  // values <= 0 are not drawn
+  // The y axis shows at least this much, so that noise does not look like a signal. 0: no limit.
+  double least_span = 0;
 };
 
 // Plots over the same quantity x. All plots of a group have the same cursor and the same zoom in x.
@@ -163,6 +166,7 @@ struct Document {
   // Of a run: a row for each vector, with the columns of page.mustache. The page has a list of them
   // that can be searched. Its tables select rows of this list, and html_report() adds the plots.
   std::optional<std::vector<std::vector<Cell>>> results = {};
+  std::map<std::string, std::string> whys = {};  // "profile/group/name" -> what the case tests
 };
 
 // "8.13 us", "1.02 ms", "312 ns".

@@ -73,18 +73,30 @@ Quaternions setpoints_of(const Flown& flown) {
   return out;
 }
 
+// Without jumps of a whole turn, which would hide a small change about half a turn.
 Columns angles(const Quaternions& q, const std::string& of) {
   Columns columns = {{of + "roll", {}}, {of + "pitch", {}}, {of + "yaw", {}}};
   for (std::size_t tick = 0; tick < q[0].size(); ++tick) {
     const auto angles_deg = euler_deg(q[0][tick], q[1][tick], q[2][tick], q[3][tick]);
-    for (std::size_t i = 0; i < 3; ++i) columns[i].second.push_back(angles_deg[i]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      std::vector<float>& angle = columns[i].second;
+      const float before = angle.empty() ? 0 : angle.back();
+      const float turns = std::round((angles_deg[i] - before) / 360);
+      angle.push_back(angles_deg[i] - 360 * (std::isfinite(turns) ? turns : 0));
+    }
   }
   return columns;
 }
 
-Columns columns_of(const Trace& flown, const std::vector<std::string>& names) {
+// A column of the trace, and its name in a plot.
+struct NamedColumn {
+  std::string column, name;
+};
+using NamedColumns = std::vector<NamedColumn>;
+
+Columns columns_of(const Trace& flown, const NamedColumns& wanted) {
   Columns columns;
-  for (const std::string& name : names) columns.emplace_back(name, column(flown, name));
+  for (const auto& [of, name] : wanted) columns.emplace_back(name, column(flown, of));
   return columns;
 }
 
@@ -121,21 +133,32 @@ Plot plot_of(const std::vector<NamedFlight>& flights, Plot plot, const ColumnsOf
   return plot;
 }
 
-ColumnsOf named(std::vector<std::string> names) {
-  return [names = std::move(names)](const Flown& flown) { return columns_of(flown.trace, names); };
+ColumnsOf named(NamedColumns wanted) {
+  return
+      [wanted = std::move(wanted)](const Flown& flown) { return columns_of(flown.trace, wanted); };
+}
+
+// The trace has the position in north, east, down.
+Columns position(const Flown& flown) {
+  Columns columns = columns_of(flown.trace, {{"plant/vehicle_local_position.x", "north"},
+                                             {"plant/vehicle_local_position.y", "east"},
+                                             {"plant/vehicle_local_position.z", "altitude"}});
+  for (float& down : columns.back().second) down = -down;
+  return columns;
 }
 
 // The columns of the motors that turn during the flight, and of motor 0.
 Columns motors(const Flown& flight) {
   const Trace& flown = flight.trace;
-  std::vector<std::string> names;
+  NamedColumns motors;
   for (std::size_t i = 0; i < std::tuple_size_v<decltype(PlantSample::motor)>; ++i) {
     const bool turns = std::any_of(flown.plant.begin(), flown.plant.end(),
                                    [i](const PlantSample& s) { return s.rotor_rad_s[i] != 0; });
-    if (turns || i == 0)
-      names.push_back("plant/actuator_outputs.output[" + std::to_string(i) + "]");
+    if (!turns && i > 0) continue;
+    const std::string number = std::to_string(i);
+    motors.push_back({"plant/actuator_outputs.output[" + number + "]", "motor " + number});
   }
-  return columns_of(flown, names);
+  return columns_of(flown, motors);
 }
 
 std::vector<float> at(const std::vector<float>& values, const std::vector<std::size_t>& ticks) {
@@ -162,33 +185,57 @@ ReplayVehicle replay_of(const NamedFlight& flight) {
   return vehicle;
 }
 
-// The names of the columns with the outputs of the law.
+// The columns with the outputs of the law.
 struct LawColumns {
-  std::vector<std::string> rates_setpoint, controls, integrals;
-  const char* saturation;  // title of its plot
+  NamedColumns rates_setpoint, controls, thrust, integrals;
+  const char* controls_title;
+  const char* saturation_title;
 };
+
+NamedColumns about_axes(const std::array<const char*, 3>& columns, const std::string& what) {
+  return {{columns[0], "roll " + what}, {columns[1], "pitch " + what}, {columns[2], "yaw " + what}};
+}
 
 LawColumns columns_of_law(Module module) {
   if (module == Module::rate_unit) {
-    return {{"in/vehicle_rates_setpoint.roll", "in/vehicle_rates_setpoint.pitch",
-             "in/vehicle_rates_setpoint.yaw"},
-            {"out/vehicle_torque_setpoint.xyz[0]", "out/vehicle_torque_setpoint.xyz[1]",
-             "out/vehicle_torque_setpoint.xyz[2]", "out/vehicle_thrust_setpoint.xyz[2]"},
-            {"out/rate_ctrl_status.rollspeed_integ", "out/rate_ctrl_status.pitchspeed_integ",
-             "out/rate_ctrl_status.yawspeed_integ"},
-            "Saturation of the allocator"};
+    return {
+        about_axes({"in/vehicle_rates_setpoint.roll", "in/vehicle_rates_setpoint.pitch",
+                    "in/vehicle_rates_setpoint.yaw"},
+                   "setpoint"),
+        about_axes({"out/vehicle_torque_setpoint.xyz[0]", "out/vehicle_torque_setpoint.xyz[1]",
+                    "out/vehicle_torque_setpoint.xyz[2]"},
+                   "torque"),
+        {{"out/vehicle_thrust_setpoint.xyz[2]", "thrust, down"}},
+        about_axes({"out/rate_ctrl_status.rollspeed_integ", "out/rate_ctrl_status.pitchspeed_integ",
+                    "out/rate_ctrl_status.yawspeed_integ"},
+                   "integral"),
+        "Torque setpoint",
+        "Saturation of the allocator"};
   }
-  return {{"out/vehicle_rates_setpoint.roll", "out/vehicle_rates_setpoint.pitch",
-           "out/vehicle_rates_setpoint.yaw"},
-          {"out/actuator_controls_0.control[0]", "out/actuator_controls_0.control[1]",
-           "out/actuator_controls_0.control[2]", "out/actuator_controls_0.control[3]"},
-          {"out/mc_att_ctrl_status.roll_rate_integ", "out/mc_att_ctrl_status.pitch_rate_integ",
-           "out/mc_att_ctrl_status.yaw_rate_integ"},
+  return {about_axes({"out/vehicle_rates_setpoint.roll", "out/vehicle_rates_setpoint.pitch",
+                      "out/vehicle_rates_setpoint.yaw"},
+                     "setpoint"),
+          about_axes({"out/actuator_controls_0.control[0]", "out/actuator_controls_0.control[1]",
+                      "out/actuator_controls_0.control[2]"},
+                     "control"),
+          {{"out/actuator_controls_0.control[3]", "thrust"}},
+          about_axes(
+              {"out/mc_att_ctrl_status.roll_rate_integ", "out/mc_att_ctrl_status.pitch_rate_integ",
+               "out/mc_att_ctrl_status.yaw_rate_integ"},
+              "integral"),
+          "Controls",
           "Saturation of the mixer"};
 }
 
-// Lines are named after the columns of the trace, or roll, pitch and yaw. Setpoints are those of
-// the first flight. REQUIRES: at least one flight.
+// Whether all values of all lines are 0, so that the plot shows nothing.
+bool is_zero(const Plot& plot) {
+  return std::ranges::all_of(plot.series, [](const PlotSeries& series) {
+    return std::ranges::all_of(series.y, [](float value) { return value == 0; });
+  });
+}
+
+// Setpoints are those of the first flight. Plots in which all is zero are left out. REQUIRES: at
+// least one flight.
 PlotGroup plots_of(const std::vector<NamedFlight>& flights) {
   const auto attitude = [](const Flown& flown) {
     return angles(quaternions(flown.trace, "plant/vehicle_attitude.q"), "");
@@ -200,24 +247,35 @@ PlotGroup plots_of(const std::vector<NamedFlight>& flights) {
   PlotGroup group{"", "time from the first tick [s]", {}};
   group.plots = {
       plot_of(flights, {"Attitude", "deg"}, attitude, attitude_setpoint),
-      plot_of(flights, {"Body rates", "rad/s"},
-              named({"plant/vehicle_attitude.rollspeed", "plant/vehicle_attitude.pitchspeed",
-                     "plant/vehicle_attitude.yawspeed"}),
-              named(law.rates_setpoint)),
-      plot_of(flights, {"Controls"}, named(law.controls)),
+      plot_of(
+          flights, {"Body rates", "rad/s"},
+          named(about_axes({"plant/vehicle_attitude.rollspeed", "plant/vehicle_attitude.pitchspeed",
+                            "plant/vehicle_attitude.yawspeed"},
+                           "rate")),
+          named(law.rates_setpoint)),
+      plot_of(flights, {law.controls_title}, named(law.controls)),
+      plot_of(flights, {"Thrust"}, named(law.thrust)),
       plot_of(flights, {"Integrals"}, named(law.integrals)),
       plot_of(flights, {"Motor commands"}, motors),
-      plot_of(flights, {law.saturation}, named({"plant/mixer.saturated"})),
-      plot_of(flights, {"Position", "m"},
-              named({"plant/vehicle_local_position.x", "plant/vehicle_local_position.y",
-                     "plant/vehicle_local_position.z"}))};
-  group.plots[5].shape = PlotShape::steps;
+      plot_of(flights, {law.saturation_title}, named({{"plant/mixer.saturated", "saturated"}})),
+      plot_of(flights, {"Position", "m"}, position)};
+  group.plots[6].shape = PlotShape::steps;
+  // Of the angles, rates, controls, thrust, integrals, motors, saturation and position: what an
+  // engineer would call still.
+  const std::array least_spans{1.0, 0.05, 0.02, 0.02, 0.002, 0.02, 1.0, 0.1};
+  for (std::size_t i = 0; i < group.plots.size(); ++i) group.plots[i].least_span = least_spans[i];
+  std::erase_if(group.plots, is_zero);
   return group;
 }
 
 std::string plant_of(const SimulatedFlight& flight) {
   const auto& configuration = flight.result.plant_configuration;
   return configuration ? std::string(name_of(configuration->plant)) : "";
+}
+
+// A time is infinite if what it waits for did not happen.
+std::string value_of(const MetricResult& metric) {
+  return std::isinf(metric.value) ? "never" : fmt::format("{:.4g}", metric.value);
 }
 
 // A flight in which the port fails may have no metrics, so the rows are those of the flight with
@@ -239,7 +297,7 @@ DocumentTable metrics_table(const std::vector<SimulatedFlight>& flights) {
     for (const SimulatedFlight& flight : flights) {
       const auto& metrics = flight.result.metrics;
       const bool is_known = i < metrics.size();
-      row.emplace_back(is_known ? fmt::format("{:.4g}", metrics[i].value) : "-");
+      row.emplace_back(is_known ? value_of(metrics[i]) : "-");
       all_within = all_within && is_known && metrics[i].within();
     }
     row.emplace_back(metric_bounds(metric));

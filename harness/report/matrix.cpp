@@ -34,7 +34,10 @@ std::string headroom_text(const Together& results) {
     if (result->verdict != Verdict::pass || !result->tightest) continue;
     smallest = std::min(smallest, result->tightest->ratio);
   }
-  return std::isfinite(smallest) ? fmt::format("{:.2g}\u00d7", smallest) : "";
+  constexpr double much = 1000;  // more has no meaning: most values then agree to the bit
+  if (!(smallest < much)) return "";
+  return fmt::format("{}\u00d7", smallest < 10 ? fmt::format("{:.1f}", smallest)
+                                               : fmt::format("{:.0f}", smallest));
 }
 
 // The cell of the results of a profile for which `wanted` is true.

@@ -24,6 +24,7 @@ Plot plot_of_output(std::size_t index, const Channel& published, const Trace& wa
   Plot plot{std::string(channel.name), std::string(unit_of(channel.quantity))};
   plot.series = {{name_of_want, {}, {}}, {"got", {}, {}}};
   plot.series[1].pattern = LinePattern::dashed;
+  plot.least_span = 4 * Tolerances().of(index).absolute;
   const auto add = [&](const Trace& trace, PlotSeries& series) {
     for (const Sample& sample : trace.samples) {
       if (value_of(published, sample) == 0) continue;

@@ -121,7 +121,7 @@ class FailingPort(HasPlots, Page):
     def test_the_matrix_counts_the_results(self):
         text = self.run_in_page(
             "Object.fromEntries("
-            "[...document.querySelectorAll('.matrix tbody tr:last-child td:last-child')]"
+            "[...document.querySelectorAll('.matrix tbody tr:last-child td:last-child[data-group]')]"
             ".map((cell) => [cell.dataset.group,"
             " cell.querySelector('button').firstElementChild.nextSibling.data.trim()]))"
         )
@@ -138,6 +138,18 @@ class FailingPort(HasPlots, Page):
             for profile, (passed, compared) in totals.items()
         }
         self.assertEqual(text, expected)
+
+    def test_profiles_share_the_place_of_a_matrix(self):
+        shown = (
+            "[...document.querySelectorAll('.matrix')].filter((matrix) => matrix.offsetParent)"
+            ".map((matrix) => matrix.caption.textContent.split(':')[0])"
+        )
+        profiles = list(dict.fromkeys(result["profile"] for result in self.report["results"]))
+        self.assertGreater(len(profiles), 1)
+        for profile in profiles:
+            tabs = "[...document.querySelectorAll('[aria-label=Profile] button')]"
+            self.browser.click(f"{tabs}.find((tab) => tab.textContent === '{profile}')")
+            self.assertEqual([name for name in self.run_in_page(shown) if name != "accuracy"], [profile])
 
     def test_a_click_on_a_failing_cell_shows_its_plot(self):
         cell = "document.querySelector('.matrix td.v-fail[data-rate=\"250hz\"]')"

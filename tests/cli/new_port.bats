@@ -29,29 +29,29 @@ made() {
 @test "a new port in C" { made c cc; }
 @test "a new port in C of the cascade" {
   made c_cascade cc
-  has "px4-v1.16.0: vectors by group and rate"
+  has "partial: px4-v1.16.0, "
   lacks "px4-v1.5.5"
 }
 @test "a new port in C of the two laws alone" {
   made c_law cc rate_law
-  has "px4-v1.18: vectors by group and rate"
+  has "conformant: rate_law of px4-v1.18 "
   has "the port does not support profile px4-v1.5.5"
 }
 @test "a new port in C++" { made cpp c++; }
 @test "a new port in Python" { made python python3; }
 @test "a new port in Python of the cascade" {
   made python_cascade python3
-  has "px4-v1.16.0: vectors by group and rate"
+  has "partial: px4-v1.16.0, "
   lacks "px4-v1.5.5"
 }
 @test "a new port in Python of the two laws alone" {
   made python_law python3 rate_law
-  has "px4-v1.18: vectors by group and rate"
+  has "conformant: rate_law of px4-v1.18 "
   has "the port does not support profile px4-v1.5.5"
 }
 @test "a new port in Octave of the two laws alone" {
   made octave octave-cli rate_law
-  has "px4-v1.18: vectors by group and rate"
+  has "conformant: rate_law of px4-v1.18 "
   has "the port does not support profile px4-v1.5.5"
 }
 @test "a new port in Rust" { made rust cargo; }

@@ -36,6 +36,7 @@
     const list = element('dl', {className: 'finding'});
     const add = (name, ...value) =>
       list.append(element('dt', {}, name), element('dd', {}, ...value));
+    if (row.why) add('it tests', row.why);
     if (row.reason) add('reason', row.reason);
     if (row.signal) {
       add('first deviation', `tick ${row.tick}, timestamp ${row.time} us`);

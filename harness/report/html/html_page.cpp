@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <kainjow/mustache.hpp>
+#include <nlohmann/json.hpp>
 
 #include "harness/core/embed.hpp"
 #include "harness/core/file.hpp"
@@ -222,6 +223,7 @@ std::string html_page(const Document& document) {
   if (is_of_run) {
     out.set("verdicts", verdicts());
     out.set("results", list_of(*document.results, result_to_data));
+    set_text(out, "whys", script_json(nlohmann::json(document.whys)));
   } else {
     set_text(out, "plots", plot_data_json(document));
   }

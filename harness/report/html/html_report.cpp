@@ -136,6 +136,7 @@ Document run_document(const Report& report) {
   document.tables = matrices_of(run);
   if (auto accuracy = accuracy_of(run)) document.tables.push_back(*std::move(accuracy));
   document.results.emplace();
+  document.whys = run.whys;
   for (const VectorResult& result : run.results) document.results->push_back(row_of(result, run));
   return document;
 }

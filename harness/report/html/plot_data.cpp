@@ -107,15 +107,12 @@ json plot_to_json(const Plot& plot) {
   for (const PlotMark& mark : plot.marks) {
     marks.push_back({{"x", mark.x}, {"text", one_line(mark.text)}});
   }
-  json out = {{"title", one_line(plot.title)},
-              {"unit", one_line(plot.unit)},
-              {"note", one_line(plot.note)},
-              {"shape", name_of(plot.shape)},
-              {"logarithmic_x", plot.logarithmic_x},
-              {"logarithmic_y", plot.logarithmic_y},
-              {"marks", std::move(marks)},
-              {"grids", grids.x_to_json()},
-              {"series", series_to_json(plot, numbers, grids)}};
+  json out = {
+      {"title", one_line(plot.title)},       {"unit", one_line(plot.unit)},
+      {"note", one_line(plot.note)},         {"shape", name_of(plot.shape)},
+      {"logarithmic_x", plot.logarithmic_x}, {"logarithmic_y", plot.logarithmic_y},
+      {"least_span", plot.least_span},       {"marks", std::move(marks)},
+      {"grids", grids.x_to_json()},          {"series", series_to_json(plot, numbers, grids)}};
   if (plot.band) {
     out["band"] = {{"name", one_line(plot.band->name)},
                    {"grid", of_band},

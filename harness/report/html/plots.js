@@ -169,12 +169,21 @@
     return options;
   };
 
-  // With the default range of a logarithmic axis, the lowest bar would have no height.
-  const valueRange = ({shape, logarithmic_y, series}) => {
-    if (shape !== 'bars' || !logarithmic_y) return null;
-    const values = series.flatMap(({y}) => y).filter((value) => value > 0);
-    if (values.length === 0) return null;
-    return [Math.min(...values) / 2, Math.max(...values) * 2];
+  const extent = (values) =>
+    values.reduce(([low, high], y) => [Math.min(low, y), Math.max(high, y)], [Infinity, -Infinity]);
+
+  // null: that of dygraphs. With this range of a logarithmic axis, the lowest bar would have no
+  // height; and it would magnify values that hardly differ.
+  const valueRange = ({shape, logarithmic_y, series, least_span}) => {
+    const values = series.flatMap(({y}) => [...y]).filter(Number.isFinite);
+    if (shape === 'bars' && logarithmic_y) {
+      const [low, high] = extent(values.filter((value) => value > 0));
+      return low <= high ? [low / 2, high * 2] : null;
+    }
+    const [low, high] = extent(values);
+    if (!(high - low < least_span)) return null;
+    const middle = (low + high) / 2;
+    return [middle - least_span / 2, middle + least_span / 2];
   };
 
   const optionsOf = (plot, xLabel) => {
@@ -244,7 +253,7 @@
         const at = nearest(series.x, x);
         const value = series.y[at];
         const isGap = isOfPoints(plot.shape) && Number.isNaN(value);
-        values[i].textContent = isGap ? '-' : shown(value);
+        values[i].textContent = isGap ? '-' : shown(value, 5);
       });
       place.textContent = `at ${shown(x)}`;
     };

@@ -10,6 +10,8 @@
   const symbols = Object.fromEntries(verdicts.map(({verdict, symbol}) => [verdict, symbol]));
   const failing = new Set(verdicts.filter(({fails}) => fails).map(({verdict}) => verdict));
 
+  const whys = JSON.parse(document.getElementById('whys').textContent); // by case
+
   const readRow = (tableRow) => {
     const row = {};
     let i = 0;
@@ -18,6 +20,7 @@
     row.id = `${row.group}/${row.name}@${row.configuration}`;
     row.rate = row.configuration.match(/^.*?hz/)[0];
     row.isFlight = row.configuration !== row.rate;
+    row.why = whys[`${row.group}/${row.name}`] ?? '';
     return row;
   };
   const rows = Array.from(table.tBodies[0].rows, readRow);
@@ -312,6 +315,28 @@
   addEventListener('beforeprint', () => renderRows(true));
   addEventListener('afterprint', () => renderRows());
   addEventListener('resize', () => renderRows());
+
+  // Several profiles share the place of one matrix.
+  const matrices = [...document.querySelectorAll('.matrix')]
+    .filter((matrix) => matrix.querySelector('[data-group]'))
+    .map((matrix) => matrix.parentElement);
+  const profileOf = (place) => place.querySelector('caption').textContent.split(':')[0];
+  const showMatrix = (chosenOne) => {
+    for (const place of matrices) place.hidden = place !== chosenOne;
+    for (const [i, tab] of tabs.entries())
+      tab.setAttribute('aria-pressed', String(matrices[i] === chosenOne));
+  };
+  const tabs = matrices.map((place) => {
+    const tab = element('button', {type: 'button'}, profileOf(place));
+    tab.addEventListener('click', () => showMatrix(place));
+    return tab;
+  });
+  if (matrices.length > 1) {
+    matrices[0].before(
+      element('div', {className: 'tools', role: 'group', 'aria-label': 'Profile'}, ...tabs)
+    );
+    showMatrix(matrices[0]);
+  }
 
   document.querySelectorAll('.matrix td[data-group]').forEach(makeClickable);
   table.before(

@@ -23,10 +23,10 @@ const attest = {};
     return Array.from({length: bytes.length / 4}, (_, i) => view.getFloat32(4 * i, true));
   };
 
-  const shown = (value) => {
+  const shown = (value, digits = 8) => {
     if (value === null || value === undefined) return '';
     if (!Number.isFinite(value)) return String(value).replace('Infinity', 'inf').toLowerCase();
-    return Number(value.toPrecision(8)).toString();
+    return Number(value.toPrecision(digits)).toString();
   };
 
   const styledAxes = () => ({

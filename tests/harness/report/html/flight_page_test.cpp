@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -26,7 +27,10 @@ Flown two_ticks() {
   const float half = std::sqrt(0.5f);
   trace.plant[0].q = {1, 0, 0, 0};
   trace.plant[1].q = {half, half, 0, 0};
-  for (PlantSample& sample : trace.plant) sample.rotor_rad_s = {500, 500, 500};
+  for (PlantSample& sample : trace.plant) {
+    sample.rotor_rad_s = {500, 500, 500};
+    sample.motor = {0.1f, 0.1f, 0.1f};
+  }
   return flown;
 }
 
@@ -52,11 +56,38 @@ TEST(FlightPlots, TheAttitudeIsInDegrees) {
   EXPECT_THAT(attitude.series[2].y, ElementsAre(0, 0));
 }
 
-TEST(FlightPlots, SignalsHaveTheNamesOfTheTrace) {
+TEST(FlightPlots, SignalsHaveNamesInWords) {
   const Plot integrals = plot("Integrals");
-  EXPECT_EQ(integrals.series[0].name, "out/mc_att_ctrl_status.roll_rate_integ");
+  EXPECT_EQ(integrals.series[0].name, "roll integral");
   EXPECT_THAT(integrals.series[0].y, ElementsAre(0, 0.25f));
   EXPECT_THAT(integrals.series[0].x, ElementsAre(0, 0.004));
+}
+
+TEST(FlightPlots, WhatIsZeroThroughoutIsLeftOut) {
+  EXPECT_THAT(plot("Saturation of the mixer").series, testing::IsEmpty());
+}
+
+TEST(FlightPlots, AltitudeIsUp) {
+  Flown flown = two_ticks();
+  flown.trace.plant[1].position_m = {1, 2, -3};
+  const auto document = flight_document({{passed("flight", "hover", Rate::hz(250)), flown}}, {});
+  const Plot& position = document.groups.front().plots.back();
+  EXPECT_EQ(position.series[2].name, "altitude");
+  EXPECT_THAT(position.series[2].y, ElementsAre(0, 3));
+}
+
+// A yaw that passes through half a turn goes on.
+TEST(FlightPlots, AnglesHaveNoJumps) {
+  Flown flown = two_ticks();
+  const auto yaw = [](PlantSample& sample, float deg) {
+    const float half = deg * std::numbers::pi_v<float> / 360;
+    sample.q = {std::cos(half), 0, 0, std::sin(half)};
+  };
+  yaw(flown.trace.plant[0], 179);
+  yaw(flown.trace.plant[1], -179);
+  const auto document = flight_document({{passed("flight", "hover", Rate::hz(250)), flown}}, {});
+  const auto& series = document.groups.front().plots.front().series[2];
+  EXPECT_THAT(series.y, ElementsAre(FloatNear(179, 1e-3f), FloatNear(181, 1e-3f)));
 }
 
 TEST(FlightPlots, OnlyMotorsOfTheVehicleArePlotted) {

@@ -46,7 +46,14 @@ TEST(HtmlReport, NeverInterpretsTextOfThePort) {
   EXPECT_THAT(page, HasSubstr("acme &lt;fc&gt; &amp; "));
   EXPECT_THAT(page, HasSubstr("&lt;/failure&gt;]]&gt;&lt;script&gt;alert(1)&lt;/script&gt;"));
   EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
-  EXPECT_EQ(count(page, "</script>"), 8u);
+  EXPECT_EQ(count(page, "</script>"), 9u);
+}
+
+TEST(HtmlReport, TellsWhatACaseTests) {
+  RunResult run = sample_run();
+  run.whys["px4-v1.5.5/attitude/yaw_step"] = "A yaw </script> step.";
+  EXPECT_THAT(page_of(run),
+              HasSubstr(R"({"px4-v1.5.5/attitude/yaw_step":"A yaw \u003c/script> step."})"));
 }
 
 TEST(HtmlReport, NeedsNoOtherFile) {
