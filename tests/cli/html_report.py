@@ -121,7 +121,7 @@ class FailingPort(HasPlots, Page):
     def test_the_matrix_counts_the_results(self):
         text = self.run_in_page(
             "Object.fromEntries("
-            "[...document.querySelectorAll('.matrix tbody tr:last-child td:last-child[data-group]')]"
+            "[...document.querySelectorAll('.matrix tr:last-child td:last-child[data-group]')]"
             ".map((cell) => [cell.dataset.group,"
             " cell.querySelector('button').firstElementChild.nextSibling.data.trim()]))"
         )
@@ -149,7 +149,8 @@ class FailingPort(HasPlots, Page):
         for profile in profiles:
             tabs = "[...document.querySelectorAll('[aria-label=Profile] button')]"
             self.browser.click(f"{tabs}.find((tab) => tab.textContent === '{profile}')")
-            self.assertEqual([name for name in self.run_in_page(shown) if name != "accuracy"], [profile])
+            names = [name for name in self.run_in_page(shown) if name != "accuracy"]
+            self.assertEqual(names, [profile])
 
     def test_a_click_on_a_failing_cell_shows_its_plot(self):
         cell = "document.querySelector('.matrix td.v-fail[data-rate=\"250hz\"]')"
