@@ -8,6 +8,7 @@
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/interrupt.hpp"
 #include "harness/core/suggestion.hpp"
+#include "harness/diagnosis/core_suite.hpp"
 #include "harness/diagnosis/diagnose_catalogue.hpp"
 #include "harness/diagnosis/fault_job.hpp"
 #include "harness/diagnosis/naive_suite.hpp"
@@ -24,6 +25,7 @@ struct FaultOptions {
   std::vector<std::string> profiles;  // empty: all
   bool list = false;
   bool diagnose = false;
+  bool core = false;
   std::optional<int> fraction_bits;
   std::string level;  // of all cases; empty: numeric, and exact for cases of that level only
   std::string log;    // of a flight, in place of the suite
@@ -233,6 +235,28 @@ int faults_of_log(const FaultOptions& options, std::vector<const Fault*> faults)
   return exit_ok;
 }
 
+// Prints the file cases/CORE: the core of each profile.
+int print_core(const FaultOptions& options, const SuiteFolder& suite,
+               const std::vector<std::string>& profiles) {
+  fmt::print(
+      "# The core of the suite: few vectors that catch every fault that all vectors catch at the\n"
+      "# level numeric, for each module of its own. `attest faults --core` prints this file.\n");
+  const Goldens goldens(suite.golden());
+  for (const std::string& profile : profiles) {
+    const auto cases = open_loop_cases(suite, profile);
+    if (!cases) return report_error(cases.error());
+    const auto cores = core_of(*cases, profile, goldens, {options.jobs, interrupted});
+    if (interrupted()) return exit_interrupted;
+    if (!cores) return report_error(cores.error());
+    for (const CoreOfModule& core : *cores) {
+      if (core.vectors.empty()) continue;
+      fmt::print("\n# {}, {}: {} faults, {} vectors, {} ticks\n{}\n", profile, name_of(core.module),
+                 core.faults, core.vectors.size(), core.ticks, fmt::join(core.vectors, "\n"));
+    }
+  }
+  return exit_ok;
+}
+
 int faults_command(const FaultOptions& options, const Globals& globals) {
   const auto faults = chosen(options);
   if (!faults) return report_error(faults.error());
@@ -247,6 +271,7 @@ int faults_command(const FaultOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
   note_interrupts();
+  if (options.core) return print_core(options, *suite, *profiles);
   int worst = exit_ok;
   for (const std::string& profile : *profiles) {
     if (&profile != &profiles->front()) fmt::print("\n");
@@ -303,10 +328,18 @@ void add_faults(const CommandLine& line) {
       .type("FLIGHT.ulg")
       .excludes(bits)
       .excludes(level);
+  command
+      .flag("--core", options->core,
+            "Print the core of the suite instead, the file cases/CORE: few vectors that catch the "
+            "same faults at the level numeric")
+      .excludes(bits)
+      .excludes(ids)
+      .excludes(level);
   add_assumed(command, options->assumed);
   add_jobs(command, options->jobs, "Number of faults that run at the same time");
   command.examples({{"attest faults", "measure which faults the open-loop cases catch"},
                     {"attest faults --level events tpa-missing", "the same at one level"},
+                    {"attest faults --core >cases/CORE", "choose the vectors of `run --core`"},
                     {"attest faults --log FLIGHT.ulg", "which mistakes does this flight show?"},
                     {"attest faults --list --profile px4-v1.3.4",
                      "list the catalogue of one version of the law"}});

@@ -1,6 +1,8 @@
 #include "harness/cli/globals.hpp"
 
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <set>
 #include <utility>
 
@@ -31,6 +33,25 @@ Result<std::vector<SelectedCase>> failed_in(const std::string& report,
   return fail_at(report, "no selected vector failed in it; run without --rerun-failed");
 }
 
+// The vectors of the files CORE. A line is an id, or begins with #.
+Result<std::vector<SelectedCase>> core_of_suite(const CaseFolders& folders,
+                                                std::vector<SelectedCase> cases) {
+  std::set<std::string> ids;
+  for (const std::filesystem::path& folder : folders) {
+    std::ifstream file(folder / "CORE");
+    for (std::string line; std::getline(file, line);) {
+      if (!line.empty() && line.front() != '#') ids.insert(line);
+    }
+  }
+  if (ids.empty()) {
+    return fail_at((folders.back() / "CORE").string(),
+                   "the suite has no core; write this file with `attest faults --core`");
+  }
+  cases = keep_vectors(std::move(cases), ids);
+  if (!cases.empty()) return cases;
+  return fail("no selected vector is of the core; run without --core");
+}
+
 }  // namespace
 
 int report_error(const Error& error) {
@@ -52,6 +73,7 @@ std::string SelectionOptions::narrowing() const {
                              {"--rate", rates},
                              {"--vehicle", vehicles},
                              {"--plant", plants}});
+  if (core) options.emplace_back("--core");
   if (!rerun_failed.empty()) options.push_back("--rerun-failed " + rerun_failed);
   return fmt::format("{}", fmt::join(options, " "));
 }
@@ -81,6 +103,7 @@ Result<std::vector<SelectedCase>> SelectionOptions::cases_in(const CaseFolders& 
   if (!part) return tl::unexpected(part.error());
   selection.shard = *part;
   auto cases = select_cases(folders, selection);
+  if (cases && core) cases = core_of_suite(folders, *std::move(cases));
   if (!cases || rerun_failed.empty()) return cases;
   return failed_in(rerun_failed, *std::move(cases));
 }

@@ -34,16 +34,17 @@ int report_error(const Error& error);
 // Errors: those of LoopRate::parse().
 Result<std::vector<LoopRate>> parse_rates(const std::vector<std::string>& texts);
 
-// --filter, --exclude, --group, --profile, --rate, --vehicle, --plant, --shard and --rerun-failed,
-// as text until they are used.
+// --filter, --exclude, --group, --profile, --rate, --vehicle, --plant, --core, --shard and
+// --rerun-failed, as text until they are used.
 struct SelectionOptions {
   std::vector<std::string> filters, excludes, groups, profiles, rates, vehicles, plants;
   std::string shard = "1/1";
+  bool core = false;         // only the vectors that the file CORE of the cases names
   std::string rerun_failed;  // a JSON report: only vectors that failed in it; empty: no report
 
   bool selects_all() const {
     return filters.empty() && excludes.empty() && groups.empty() && profiles.empty() &&
-           rates.empty() && vehicles.empty() && plants.empty() && shard == "1/1" &&
+           rates.empty() && vehicles.empty() && plants.empty() && !core && shard == "1/1" &&
            rerun_failed.empty();
   }
 
@@ -51,7 +52,8 @@ struct SelectionOptions {
   std::string narrowing() const;
 
   // The selected cases below `folders`. Errors: those of select_cases; text that is not a rate or a
-  // shard; a --rerun-failed that is no report, or in which no selected vector failed.
+  // shard; no file CORE, or none of its vectors is selected; a --rerun-failed that is no report, or
+  // in which no selected vector failed.
   Result<std::vector<SelectedCase>> cases_in(const CaseFolders& folders) const;
 };
 

@@ -135,6 +135,11 @@ void add_selection(Command command, SelectionOptions& options, Selects selects) 
                            "v1.16 have pairs such as 250:1000"
                          : "Only these loop rates [Hz], separated by commas")
       .group(option_group::selection);
+  command
+      .flag("--core", options.core,
+            "Only the core of the suite: few vectors that catch the same faults of the catalogue, "
+            "for a slow port")
+      .group(option_group::selection);
   if (!with_flights) return;
   add("--vehicle", options.vehicles, "Only flights of these vehicles, separated by commas",
       "VEHICLE")
