@@ -1,0 +1,120 @@
+#include "harness/diagnosis/hunt_trial.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "harness/golden/reference.hpp"
+#include "harness/port/profiles.hpp"
+#include "harness/verify/declared_lacks.hpp"
+#include "harness/verify/evaluate.hpp"
+#include "harness/verify/reference_comparison.hpp"
+
+namespace attest {
+namespace {
+
+// The reference in double precision is nearer to that in float than this part of the tolerances, or
+// correct ports may differ by more than a tolerance, too.
+constexpr double sure_part = 0.1;
+
+// The trace up to the tick, with outputs of the reference.
+Result<Trace> begin_of(const HuntInputs& inputs, std::size_t last_step) {
+  HuntTrace parts(inputs);
+  Trace begin;
+  if (auto read = parts.next_part(last_step + 1, begin); !read) {
+    return tl::unexpected(read.error());
+  }
+  return begin;
+}
+
+bool is_by_precision(const HuntInputs& inputs, const Trace& right, std::size_t last_step) {
+  Trace in_double = right;
+  const auto host = open_reference({}, Precision::binary64);
+  if (host->drive(inputs.subject, in_double)) return true;
+  const auto difference = compare(in_double, right, Tolerances(Level::numeric).scaled(sure_part));
+  return difference.first && difference.first->tick <= last_step;
+}
+
+// Whether rounding can explain the deviation.
+bool is_excused(const HuntInputs& inputs, const VectorResult& failed,
+                std::optional<int> fraction_bits) {
+  if (!failed.first || failed.verdict == Verdict::non_finite) return false;
+  const std::size_t last_step = failed.first->tick;
+  const auto right = begin_of(inputs, last_step);
+  if (!right) return true;
+  return first_near_decision(inputs.subject, *right, fraction_bits, last_step) ||
+         is_by_precision(inputs, *right, last_step);
+}
+
+double deviation_of(const VectorResult& result) {
+  if (result.worst && result.worst->tolerance > 0) {
+    return std::abs(result.worst->got - result.worst->want) / result.worst->tolerance;
+  }
+  return result.tightest && result.tightest->ratio > 0 ? 1 / result.tightest->ratio : 0;
+}
+
+bool uses_lacking(const HuntInputs& inputs, const Lacks& lacks) {
+  if (lacks.features.none()) return false;
+  const auto trace = whole_trace_of(inputs);
+  return !trace || lacking_features(lacks, *trace, inputs.subject).any();
+}
+
+}  // namespace
+
+void make_orderly(const Lacks& lacks, HuntInputs& inputs) {
+  const ProfileInfo* const profile = find_profile(inputs.subject.profile);
+  if (profile == nullptr) return;
+  std::ranges::stable_sort(inputs.parameters, {}, [](const ParameterChange& change) {
+    return std::tuple(change.tick, std::string_view(change.name));
+  });
+  std::map<std::string, float> values;
+  for (const Parameter& known : parameters_of(inputs.subject.module, *profile)) {
+    const std::string name(known.name);
+    const ConstantParameter* const constant = lacks.constant(name);
+    const auto is_this = [&](const ParameterChange& change) { return change.name == name; };
+    if (constant != nullptr) std::erase_if(inputs.parameters, is_this);
+    const float usual = constant != nullptr ? constant->value : known.default_value;
+    const auto first = std::ranges::find_if(inputs.parameters, is_this);
+    const bool is_late = first != inputs.parameters.end() && first->tick > 0;
+    if (is_late || usual != known.default_value) {
+      inputs.parameters.insert(inputs.parameters.begin(), {0, name, usual});
+    }
+  }
+  std::ranges::stable_sort(inputs.parameters, {}, [](const ParameterChange& change) {
+    return std::tuple(change.tick, std::string_view(change.name));
+  });
+  std::erase_if(inputs.parameters, [&](const ParameterChange& change) {
+    const auto [value, is_first] = values.try_emplace(change.name, change.value);
+    const bool is_same = !is_first && (value->second == change.value ||
+                                       (std::isnan(value->second) && std::isnan(change.value)));
+    value->second = change.value;
+    return is_same;
+  });
+}
+
+Result<HuntTrial> judge_trial(const HuntInputs& inputs, PortHost& host, Level level) {
+  HuntTrial trial;
+  const Lacks& lacks = host.declarations().lacks;
+  if (uses_lacking(inputs, lacks)) return trial;
+  HuntTrace parts(inputs, &trial.meets);
+  auto result = evaluate_parts(parts, inputs.subject, host, Tolerances(level));
+  if (!result) return tl::unexpected(result.error());
+  trial.steps = inputs.steps();
+  trial.deviation = level == Level::exact ? 0 : deviation_of(*result);
+  if (!fails_a_run(result->verdict)) return trial;
+  if (level != Level::exact && is_excused(inputs, *result, host.declarations().fraction_bits)) {
+    trial.deviation = 0;
+    return trial;
+  }
+  trial.deviation = std::max(trial.deviation, 1.0);
+  result->profile = inputs.subject.profile;
+  result->group = hunt_group;
+  result->name = name_of(inputs.subject.module);
+  result->rate = inputs.rate;
+  result->compared = level;
+  trial.failure = *std::move(result);
+  return trial;
+}
+
+}  // namespace attest
