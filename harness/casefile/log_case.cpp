@@ -148,7 +148,9 @@ bool write_fields(const Ticks& ticks, std::string_view topic,
     }
     const double plain = channel.type == ChannelType::f32 ? short_decimal(baseline(channel))
                                                           : baseline(channel);
-    const bool is_left_out = ticks.rate && history.is_always(plain);
+    // The table of a battery makes the case one of a battery estimate.
+    const bool may_be_left_out = ticks.rate && ticks.module != Module::battery_status;
+    const bool is_left_out = may_be_left_out && history.is_always(plain);
     if (!is_left_out) history.write(topic, channel.field(), ticks.unit(), toml);
     is_constant = is_constant && history.is_constant();
   }

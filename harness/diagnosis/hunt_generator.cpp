@@ -7,6 +7,7 @@
 #include "harness/diagnosis/hunt_trial.hpp"
 #include "harness/diagnosis/hunt_values.hpp"
 #include "harness/diagnosis/hunt_writer.hpp"
+#include "harness/golden/recorded.hpp"
 
 namespace attest {
 namespace {
@@ -62,13 +63,14 @@ void set_parameter(const HuntTarget& target, const Parameter& parameter, HuntInp
   std::erase_if(inputs.parameters, [&](const ParameterChange& change) {
     return change.name == name;
   });
-  const bool is_late = random.chance(0.25);
-  inputs.parameters.push_back({0, name, hunt_parameter(parameter, target.level, random)});
-  if (!is_late) return;
+  const auto set = [&](std::size_t tick) {
+    ParameterChange change{tick, name, hunt_parameter(parameter, target.level, random)};
+    if (check_parameter(target.subject, change)) inputs.parameters.push_back(std::move(change));
+  };
+  set(0);
+  const bool may_change = info_of(target.subject.module).is_unit();
   const std::size_t tick = random.below(inputs.ticks.size());
-  if (tick > 0) {
-    inputs.parameters.push_back({tick, name, hunt_parameter(parameter, target.level, random)});
-  }
+  if (may_change && tick > 0 && random.chance(0.25)) set(tick);
 }
 
 void choose_parameters(const HuntTarget& target, HuntInputs& inputs, HuntRandom& random) {

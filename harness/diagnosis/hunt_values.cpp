@@ -189,7 +189,9 @@ float hunt_parameter(const Parameter& parameter, Level level, HuntRandom& random
   const double usual = parameter.default_value;
   const bool has_least = std::isfinite(parameter.min), has_most = std::isfinite(parameter.max);
   const double least = has_least ? parameter.min : 0;
-  const double most = has_most ? parameter.max : std::max(4 * usual, 0.05);
+  const double most = has_most               ? parameter.max
+                      : parameter.is_integer ? usual + 12
+                                             : std::max(4 * usual, 0.05);
   if (parameter.is_integer) {
     const double integer = std::floor(random.uniform(least, std::min(most, least + 3)));
     return static_cast<float>(random.chance(0.1) ? most : integer);
