@@ -14,6 +14,7 @@
 #include "harness/diagnosis/hunt_job.hpp"
 #include "harness/diagnosis/hunt_shrink.hpp"
 #include "harness/golden/reference.hpp"
+#include "harness/port/features.hpp"
 #include "harness/port/port.hpp"
 
 namespace attest {
@@ -37,12 +38,22 @@ struct Failure {
   std::size_t alike = 0;  // later trials that failed in the same way
 };
 
+// What the port declares that it lacks; a group of cases that it does not support, too, if it is
+// named after a feature.
+Lacks lacks_of(const Declarations& port) {
+  Lacks lacks = port.lacks;
+  for (const std::string& group : port.unsupported_groups) {
+    if (const auto feature = feature_named(group)) lacks.features |= only(*feature);
+  }
+  return lacks;
+}
+
 class Hunt {
  public:
   Hunt(const HuntOptions& options, const HostOptions& host) : options_(options), host_(host) {
     const Declarations& port = *host.said;
     for (const ModuleUnderTest& subject : options.subjects) {
-      targets_.push_back({{subject, options.level, port.fixed_step, port.lacks}, {}, {}, 0});
+      targets_.push_back({{subject, options.level, port.fixed_step, lacks_of(port)}, {}, {}, 0});
     }
   }
 

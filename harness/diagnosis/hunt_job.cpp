@@ -87,7 +87,7 @@ Result<HuntTrials> TrialJob::run(std::size_t) {
     const HuntedTarget& hunted = targets_[number % targets_.size()];
     if (auto ready = ensure_host(host, options_); !ready) return tl::unexpected(ready.error());
     const HuntInputs inputs = make_trial(hunted.target, seed_, number, hunted.kept);
-    auto trial = judge_trial(inputs, *host, hunted.target.level);
+    auto trial = judge_trial(inputs, hunted.target.lacks, *host, hunted.target.level);
     if (!trial) return tl::unexpected(trial.error());
     // A port that did not answer in time gets no more requests.
     if (trial->failure && trial->failure->verdict == Verdict::timeout) host.reset();
@@ -124,7 +124,7 @@ Result<ShrunkCase> ShrinkJob::run(std::size_t) {
   ShrunkCase found;
   std::unique_ptr<PortHost> host;
   if (auto ready = ensure_host(host, options_); !ready) return tl::unexpected(ready.error());
-  auto trial = judge_trial(inputs_, *host, target_.level);
+  auto trial = judge_trial(inputs_, target_.lacks, *host, target_.level);
   if (!trial) return tl::unexpected(trial.error());
   host.reset();  // one process of the port at a time
   found.needs_others = !trial->failure;

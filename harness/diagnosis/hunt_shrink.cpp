@@ -50,7 +50,7 @@ class Shrinker {
       error_ = ready.error();
       return false;
     }
-    auto trial = judge_trial(candidate, *host_, target_.level);
+    auto trial = judge_trial(candidate, target_.lacks, *host_, target_.level);
     if (!trial) {
       error_ = trial.error();
       return false;

@@ -140,9 +140,9 @@ void make_orderly(const Lacks& lacks, HuntInputs& inputs) {
   });
 }
 
-Result<HuntTrial> judge_trial(const HuntInputs& inputs, PortHost& host, Level level) {
+Result<HuntTrial> judge_trial(const HuntInputs& inputs, const Lacks& lacks, PortHost& host,
+                              Level level) {
   HuntTrial trial;
-  const Lacks& lacks = host.declarations().lacks;
   if (uses_lacking(inputs, lacks)) return trial;
   HuntTrace parts(inputs, &trial.meets);
   auto result = evaluate_parts(parts, inputs.subject, host, Tolerances(level));

@@ -31,7 +31,8 @@ void make_orderly(const Lacks& lacks, HuntInputs& inputs);
 // Gives the inputs to a fresh instance, and compares it with the reference. A deviation at the level
 // numeric counts only if rounding cannot explain it: up to its tick, the reference in double
 // precision stays well within the tolerances, and no decision of the law is nearer than its margin.
-// Inputs with a feature that the port lacks are not judged. Errors: the reference fails.
-Result<HuntTrial> judge_trial(const HuntInputs& inputs, PortHost& host, Level level);
+// Inputs with a feature of `lacks` are not judged. Errors: the reference fails.
+Result<HuntTrial> judge_trial(const HuntInputs& inputs, const Lacks& lacks, PortHost& host,
+                              Level level);
 
 }  // namespace attest

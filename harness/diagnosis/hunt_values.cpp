@@ -196,6 +196,10 @@ float hunt_parameter(const Parameter& parameter, Level level, HuntRandom& random
     const double integer = std::floor(random.uniform(least, std::min(most, least + 3)));
     return static_cast<float>(random.chance(0.1) ? most : integer);
   }
+  if (!has_least && !has_most) {  // of the battery
+    if (random.chance(0.2)) return parameter.default_value;
+    return static_cast<float>(usual < 0 ? random.uniform(0, 0.05) : usual * random.uniform(0.8, 1.2));
+  }
   double value = usual;
   switch (random.below(8)) {
     case 0:
