@@ -306,8 +306,8 @@ void add_hunt(const CommandLine& line) {
       .group(option_group::selection);
   command
       .option("--module", options->modules,
-              "Only these modules, separated by commas, such as `rate_unit`; default: all of the "
-              "port")
+              fmt::format("Only these modules, separated by commas: `{}`; default: all of the port",
+                          fmt::join(names_of(ModuleSet().set()), "`, `")))
       .type("MODULE")
       .separated_by_commas()
       .one_each_time()

@@ -72,7 +72,6 @@ class Hunt {
   Result<void> round();
   void take(const HuntTrial& trial, const std::vector<std::size_t>& kept_before);
   void note_failure(std::size_t target, HuntInputs inputs, const VectorResult& result);
-  void find_passing(std::size_t target);
   Result<void> find();
   Result<HuntFinding> finding_of(const Failure& failure, const ShrunkCase& shrunk);
   std::optional<Diagnosis> diagnosis_of(const std::vector<std::pair<std::string, VectorResult>>&);
@@ -132,7 +131,7 @@ void Hunt::take(const HuntTrial& trial, const std::vector<std::size_t>& kept_bef
     return note_failure(index, inputs(), *trial.failure);
   }
   auto& passing = passing_[index];
-  if (passing.size() < most_passing_trials && trial.steps > 0) passing.push_back(inputs());
+  if (passing.size() < most_passing_trials && trial.agrees) passing.push_back(inputs());
   constexpr double larger = 1.3;
   const bool is_new = (trial.meets & ~hunted.met).any();
   const bool is_larger = trial.deviation > hunted.deviation * larger && trial.deviation > 1e-3;

@@ -103,6 +103,20 @@ void add_extremes(const HuntTarget& target, HuntInputs& inputs, HuntRandom& rand
   }
 }
 
+// At the level numeric, the step of the old rate law is at least 2 ms, as in its unit: the law
+// divides by it.
+void limit_step(const HuntTarget& target, HuntInputs& inputs) {
+  const auto dt = find_channel(target.subject.module, "in/law.dt");
+  const ProfileInfo* const profile = find_profile(target.subject.profile);
+  const bool divides = profile != nullptr && contains(profile->modules, Module::mc_att_control);
+  if (!dt || !divides || target.level == Level::exact) return;
+  constexpr double least_s = 0.002;
+  for (HuntTick& tick : inputs.ticks) {
+    const double value = value_of(channels()[*dt], tick.sample);
+    if (value < least_s) set_value(channels()[*dt], tick.sample, least_s);
+  }
+}
+
 HuntInputs fresh_trial(const HuntTarget& target, HuntRandom& random) {
   HuntInputs inputs;
   inputs.subject = target.subject;
@@ -196,6 +210,7 @@ HuntInputs make_trial(const HuntTarget& target, std::uint64_t seed, std::uint64_
       mutate(target, kept, inputs, random);
     }
   }
+  limit_step(target, inputs);
   make_orderly(target.lacks, inputs);
   return inputs;
 }

@@ -28,6 +28,7 @@ json to_json(const HuntTrial& trial) {
   json out = {{"number", trial.number},
               {"steps", trial.steps},
               {"deviation", trial.deviation},
+              {"agrees", trial.agrees},
               {"meets", numbers_of(trial.meets)}};
   if (trial.failure) out["failure"] = to_json(*trial.failure);
   return out;
@@ -38,6 +39,7 @@ HuntTrial trial_from(const json& in) {
   in.at("number").get_to(trial.number);
   in.at("steps").get_to(trial.steps);
   in.at("deviation").get_to(trial.deviation);
+  in.at("agrees").get_to(trial.agrees);
   for (const json& feature : in.at("meets")) trial.meets.set(feature.get<std::size_t>());
   if (in.contains("failure")) trial.failure = vector_result_from_json(in.at("failure")).value();
   return trial;

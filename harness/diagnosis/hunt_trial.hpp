@@ -18,6 +18,7 @@ struct HuntTrial {
   std::size_t steps = 0;
   // The largest deviation in units of its tolerance; 0 at the level exact. Of a failure, at least 1.
   double deviation = 0;
+  bool agrees = false;  // all outputs do; false if a deviation did not count
   HuntFeatures meets;
   std::optional<VectorResult> failure;  // the port is wrong
 };
