@@ -117,8 +117,8 @@ double short_decimal(double value) {
 }
 
 // The value of a field as the case has it: times since the tick that received the sample,
-// armed_time since the first tick (SCHEMA.md). The reset counter of a log counts from the first tick
-// on, because the unit that starts there knows of no earlier reset.
+// armed_time since the first tick (SCHEMA.md). The reset counter of a log counts from the first
+// tick on, because the unit that starts there knows of no earlier reset.
 double case_value(const Ticks& ticks, std::size_t tick, const Channel& channel) {
   const Sample& sample = ticks[tick];
   if (channel.type == ChannelType::u64) {
@@ -146,8 +146,8 @@ bool write_fields(const Ticks& ticks, std::string_view topic,
     for (const std::size_t tick : released) {
       history.add(ticks.time(tick), case_value(ticks, tick, channel));
     }
-    const double plain = channel.type == ChannelType::f32 ? short_decimal(baseline(channel))
-                                                          : baseline(channel);
+    const double plain =
+        channel.type == ChannelType::f32 ? short_decimal(baseline(channel)) : baseline(channel);
     // The table of a battery makes the case one of a battery estimate.
     const bool may_be_left_out = ticks.rate && ticks.module != Module::battery_status;
     const bool is_left_out = may_be_left_out && history.is_always(plain);
@@ -171,9 +171,8 @@ void write_topic(const Ticks& ticks, std::string_view topic, std::uint32_t bit, 
 void write_topics_without_bits(const Ticks& ticks, TomlWriter& toml) {
   std::set<std::string_view> topics;
   const ChannelSet inputs = channels_of(ticks.module, "in/");
-  for (std::size_t i = 0; i < channels().size(); ++i) {
+  for (std::size_t i = 0; i < channels().size(); ++i)
     if (inputs[i]) topics.insert(channels()[i].topic());
-  }
   for (const std::string_view topic : topics) write_fields(ticks, topic, all_of(ticks), toml);
 }
 
@@ -215,9 +214,7 @@ void write_parameters(const Ticks& ticks, const std::string& profile, TomlWriter
     if (is_first) history->second.add(0, *before);
     history->second.add(ticks.time(change.tick), change.value);
   }
-  for (const auto& [name, history] : histories) {
-    history.write("parameters", name, ticks.unit(), toml);
-  }
+  for (const auto& [key, values] : histories) values.write("parameters", key, ticks.unit(), toml);
 }
 
 std::string identifier(std::string text) {
@@ -319,8 +316,7 @@ namespace {
 // The module of the case, and the ticks at which it runs.
 void write_ticks(const Ticks& ticks, const TraceCase& about, TomlWriter& toml) {
   const ModuleInfo& info = info_of(ticks.module);
-  const bool has_key = info.case_table.empty() && ticks.module != Module::mc_att_control;
-  if (has_key) toml.set("", "module", info.name);
+  if (info.is_of_cascade() || info.is_law()) toml.set("", "module", info.name);
   if (ticks.module == Module::mixer) toml.set("mixer", "definition", about.mixer);
   toml.set("", "rates_hz", std::vector<double>{about.rate.hertz()});
   toml.set("", "rates_why", about.rates_why);
@@ -328,10 +324,9 @@ void write_ticks(const Ticks& ticks, const TraceCase& about, TomlWriter& toml) {
   if (!info.is_unit()) return;
   toml.set("unit", "start_s", seconds(ticks[ticks.begin].in.timestamp));
   std::vector<std::int64_t> dropped;
-  for (std::size_t tick = ticks.begin + 1; tick < ticks.end; ++tick) {
-    for (auto k = ticks.period(tick - 1) + 1; k < ticks.period(tick); ++k) {
-      dropped.push_back(k);
-    }
+  std::int64_t next = 0;  // period
+  for (std::size_t tick = ticks.begin; tick < ticks.end; ++tick, ++next) {
+    for (; next < ticks.period(tick); ++next) dropped.push_back(next);
   }
   if (!dropped.empty()) toml.set("unit", "drop_ticks", dropped);
 }

@@ -1,7 +1,5 @@
 #include "harness/diagnosis/hunt.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -11,6 +9,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/resource.h>
 
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/own_suite.hpp"
@@ -61,7 +60,8 @@ Result<ModuleSet> modules_of(const HuntCommandOptions& options) {
     if (!module) {
       const auto names = names_of(ModuleSet().set());
       return fail(fmt::format("--module {}: no such module{}; there are {}", name,
-                              suggestion(name, {names.begin(), names.end()}), fmt::join(names, ", ")));
+                              suggestion(name, {names.begin(), names.end()}),
+                              fmt::join(names, ", ")));
     }
     chosen |= only(*module);
   }
@@ -136,9 +136,9 @@ std::string free_name(const fs::path& folder, const HuntFinding& finding) {
 
 std::string replay_command(const fs::path& trace, const HuntFinding& finding,
                            const HuntReport& report, const std::string& mixer) {
-  std::string command = fmt::format("attest replay {} --port {} --profile {}",
-                                    shell_word(trace.string()), shell_word(report.run.port),
-                                    finding.failure.profile);
+  std::string command =
+      fmt::format("attest replay {} --port {} --profile {}", shell_word(trace.string()),
+                  shell_word(report.run.port), finding.failure.profile);
   if (report.run.level == Level::exact) command += " --level exact";
   if (!mixer.empty()) command += " --mixer " + shell_word(mixer);
   return command;
@@ -158,7 +158,8 @@ Result<void> write_findings(const std::string& out, HuntReport& report) {
     fs::create_directories(traces, failed);
     if (failed) return fail_at(traces.string(), "cannot be made: " + failed.message());
     finding.name = free_name(folder, finding);
-    const fs::path file = folder / (finding.name + ".toml"), trace = traces / (finding.name + ".csv");
+    const fs::path file = folder / (finding.name + ".toml"),
+                   trace = traces / (finding.name + ".csv");
     if (auto done = write_new_case(file, finding.toml); !done) return done;
     if (auto done = write_csv(trace, finding.trace, all_columns(finding.trace)); !done) return done;
     written = {file.string(), trace.string(),
@@ -181,8 +182,8 @@ Result<HuntPlan> make_hunt_plan(const HuntCommandOptions& options) {
   if (auto known = check_profiles(options.profiles); !known) return tl::unexpected(known.error());
   plan.host = options.host;
   plan.host.stop = interrupted;
-  auto port = prepare_port(plan.host, options.profiles.empty() ? known_profile_names()
-                                                               : options.profiles);
+  auto port =
+      prepare_port(plan.host, options.profiles.empty() ? known_profile_names() : options.profiles);
   if (!port) return tl::unexpected(port.error());
   auto subjects = subjects_of(options, *port);
   if (!subjects) return tl::unexpected(subjects.error());

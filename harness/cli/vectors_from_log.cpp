@@ -99,7 +99,8 @@ Result<std::vector<WrittenCase>> write_cases_of_log(const VectorOptions& options
   std::vector<WrittenCase> all;
   for (LogCase& made : *cases) {
     const fs::path file = folder / (made.name + ".toml");
-    if (auto written = write_new_case(file, made.toml); !written) return tl::unexpected(written.error());
+    if (auto written = write_new_case(file, made.toml); !written)
+      return tl::unexpected(written.error());
     all.push_back({file, std::move(made)});
   }
   print_notes(options.from_log, log->notes);

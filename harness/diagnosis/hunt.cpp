@@ -27,7 +27,7 @@ constexpr std::size_t trials_of_part = 128, trials_of_part_of_program = 16;
 // Kept inputs of all targets together: they are in memory.
 constexpr std::size_t most_kept = 1500;
 // Trials that are shrunk, of those that fail first in the same output.
-constexpr std::size_t most_alike = 3;
+constexpr std::size_t most_same = 3;
 // Trials that pass, to tell faults apart.
 constexpr std::size_t most_passing_trials = 8;
 
@@ -35,7 +35,7 @@ struct Failure {
   std::size_t target;
   HuntInputs inputs;
   VectorResult result;
-  std::size_t alike = 0;  // later trials that failed in the same way
+  std::size_t same = 0;  // later trials that failed in the same way
 };
 
 // What the port declares that it lacks; a group of cases that it does not support, too, if it is
@@ -53,7 +53,11 @@ class Hunt {
   Hunt(const HuntOptions& options, const HostOptions& host) : options_(options), host_(host) {
     const Declarations& port = *host.said;
     for (const ModuleUnderTest& subject : options.subjects) {
-      targets_.push_back({{subject, options.level, port.fixed_step, lacks_of(port)}, {}, {}, 0});
+      targets_.push_back({{subject, options.level, port.fixed_step, lacks_of(port),
+                           port.fraction_bits.has_value()},
+                          {},
+                          {},
+                          0});
     }
   }
 
@@ -147,13 +151,13 @@ void Hunt::take(const HuntTrial& trial, const std::vector<std::size_t>& kept_bef
 }
 
 void Hunt::note_failure(std::size_t target, HuntInputs inputs, const VectorResult& result) {
-  std::size_t alike = 0;
+  std::size_t same = 0;
   for (Failure& failure : failures_) {
     const Module module = targets_[failure.target].target.subject.module;
     const bool is_same_module = module == targets_[target].target.subject.module;
-    if (!is_same_module || !fail_alike(failure.result, result)) continue;
-    ++failure.alike;
-    if (++alike == most_alike) return;
+    if (!is_same_module || !fail_the_same_way(failure.result, result)) continue;
+    ++failure.same;
+    if (++same == most_same) return;
   }
   failures_.push_back({target, std::move(inputs), result});
 }
@@ -193,7 +197,7 @@ std::string identifier(std::string text) {
 
 Result<HuntFinding> Hunt::finding_of(const Failure& failure, const ShrunkCase& shrunk) {
   HuntFinding finding;
-  finding.trials = 1 + failure.alike;
+  finding.trials = 1 + failure.same;
   finding.failure = shrunk.needs_others ? failure.result : shrunk.of_shrunk;
   finding.needs_others = shrunk.needs_others;
   finding.name = identifier(name_without_fault(finding.failure));
@@ -214,11 +218,11 @@ Result<HuntFinding> Hunt::finding_of(const Failure& failure, const ShrunkCase& s
     finding.name = identifier(std::string(finding.diagnosis->suspects.front().fault->id));
   }
   const auto parsed = parse_case_text(
-      finding.toml, fmt::format("cases/{}/{}/{}.toml", finding.failure.profile, hunt_group,
-                                finding.name));
+      finding.toml,
+      fmt::format("cases/{}/{}/{}.toml", finding.failure.profile, hunt_group, finding.name));
   if (!parsed) return tl::unexpected(parsed.error());
-  auto trace = reference_outputs(subject_of(*parsed),
-                                 stimulate(*parsed, finding.failure.rate.motor_unit));
+  auto trace =
+      reference_outputs(subject_of(*parsed), stimulate(*parsed, finding.failure.rate.motor_unit));
   if (!trace) return tl::unexpected(trace.error());
   finding.mixer = parsed->mixer;
   finding.trace = *std::move(trace);
@@ -234,8 +238,8 @@ std::optional<Diagnosis> Hunt::diagnosis_of(
   std::vector<SelectedCase> cases;
   for (const auto& [text, result] : vectors) {
     const std::string name = fmt::format("trial_{}", cases.size());
-    const auto parsed = parse_case_text(
-        text, fmt::format("cases/{}/{}/{}.toml", result.profile, hunt_group, name));
+    const auto parsed =
+        parse_case_text(text, fmt::format("cases/{}/{}/{}.toml", result.profile, hunt_group, name));
     if (!parsed) continue;
     cases.push_back({*parsed, {RunConfiguration{result.rate, std::nullopt}}});
     run.results.push_back(result);

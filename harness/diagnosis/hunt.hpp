@@ -30,7 +30,7 @@ struct HuntOptions {
   std::vector<ModuleUnderTest> subjects;  // take turns
   Level level = Level::numeric;
   std::uint64_t seed = 1;
-  std::size_t least_steps = 1'000'000;         // the hunt ends after the round that reaches them
+  std::size_t least_steps = 1'000'000;  // the hunt ends after the round that reaches them
   std::function<bool()> is_over = [] { return false; };  // asked after a round, too
   int processes = 1;
   std::function<bool()> stop = [] { return false; };  // true: the result is not needed
@@ -42,10 +42,10 @@ struct HuntFinding {
   std::string name;  // of its case: the fault that it resembles, or the stage and the output
   VectorResult failure;
   std::optional<Diagnosis> diagnosis;
-  std::string toml;         // the case file
-  std::string mixer;        // its definition; empty: another module
-  Trace trace;              // its inputs, with the outputs of the reference
-  std::size_t trials = 0;   // that failed first in the same output
+  std::string toml;           // the case file
+  std::string mixer;          // its definition; empty: another module
+  Trace trace;                // its inputs, with the outputs of the reference
+  std::size_t trials = 0;     // that failed first in the same output
   bool needs_others = false;  // fails only after other trials in the same process: has no case
 };
 

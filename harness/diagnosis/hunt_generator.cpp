@@ -60,9 +60,8 @@ void choose_gaps(const HuntTarget& target, HuntInputs& inputs, HuntRandom& rando
 void set_parameter(const HuntTarget& target, const Parameter& parameter, HuntInputs& inputs,
                    HuntRandom& random) {
   const std::string name(parameter.name);
-  std::erase_if(inputs.parameters, [&](const ParameterChange& change) {
-    return change.name == name;
-  });
+  std::erase_if(inputs.parameters,
+                [&](const ParameterChange& change) { return change.name == name; });
   const auto set = [&](std::size_t tick) {
     ParameterChange change{tick, name, hunt_parameter(parameter, target.level, random)};
     if (check_parameter(target.subject, change)) inputs.parameters.push_back(std::move(change));
@@ -117,13 +116,30 @@ void limit_step(const HuntTarget& target, HuntInputs& inputs) {
   }
 }
 
+// The law multiplies by the weight of yaw and later divides by it, which in fixed point costs the
+// last bits of a small weight.
+void limit_yaw_weight(const HuntTarget& target, HuntInputs& inputs) {
+  if (!target.is_fixed_point) return;
+  constexpr float least = 0.1F;
+  for (ParameterChange& change : inputs.parameters) {
+    const bool is_small = change.value != 0 && change.value < least;
+    if (change.name == "MC_YAW_WEIGHT" && is_small) change.value = least;
+  }
+  const auto weight = find_channel(target.subject.module, "in/attitude_gains.yaw_weight");
+  for (HuntTick& tick : inputs.ticks) {
+    const double value = weight ? value_of(channels()[*weight], tick.sample) : 0;
+    if (value != 0 && value < least) set_value(channels()[*weight], tick.sample, least);
+  }
+}
+
 HuntInputs fresh_trial(const HuntTarget& target, HuntRandom& random) {
   HuntInputs inputs;
   inputs.subject = target.subject;
   if (target.subject.module == Module::mixer) {
     constexpr std::array<const char*, 8> definitions = {
-        "R: 4x 10000 10000 10000 0", "R: 4+ 10000 10000 10000 0", "R: 4x 9000 9500 8000 1200",
-        "R: 6x 10000 10000 10000 0", "R: 8x 10000 10000 10000 0", "R: 4+ 9000 14000 -12000 700",
+        "R: 4x 10000 10000 10000 0",    "R: 4+ 10000 10000 10000 0",
+        "R: 4x 9000 9500 8000 1200",    "R: 6x 10000 10000 10000 0",
+        "R: 8x 10000 10000 10000 0",    "R: 4+ 9000 14000 -12000 700",
         "R: 8x -11000 13000 8000 2100", "R: 6x 12000 -9000 15000 1200"};
     inputs.subject.mixer = random.one_of(definitions);
   }
@@ -144,8 +160,10 @@ void erase_ticks(const HuntWindow& window, HuntInputs& inputs) {
   inputs.ticks.erase(begin + static_cast<std::ptrdiff_t>(window.begin),
                      begin + static_cast<std::ptrdiff_t>(window.end));
   for (ParameterChange& change : inputs.parameters) {
-    if (change.tick >= window.end) change.tick -= window.end - window.begin;
-    else if (change.tick > window.begin) change.tick = window.begin;
+    if (change.tick >= window.end)
+      change.tick -= window.end - window.begin;
+    else if (change.tick > window.begin)
+      change.tick = window.begin;
     change.tick = std::min(change.tick, inputs.ticks.size() - 1);
   }
 }
@@ -211,6 +229,7 @@ HuntInputs make_trial(const HuntTarget& target, std::uint64_t seed, std::uint64_
     }
   }
   limit_step(target, inputs);
+  limit_yaw_weight(target, inputs);
   make_orderly(target.lacks, inputs);
   return inputs;
 }

@@ -8,7 +8,7 @@ namespace attest {
 namespace {
 
 std::size_t size_of(ChannelType type) {
-  return type == ChannelType::u64 ? sizeof(std::uint64_t)
+  return type == ChannelType::u64   ? sizeof(std::uint64_t)
          : type == ChannelType::f32 ? sizeof(float)
                                     : sizeof(std::uint8_t);
 }

@@ -37,10 +37,10 @@ struct HuntInputs {
 // A topic of a module's inputs: its place in a Sample.
 struct HuntTopic {
   std::string_view name;
-  std::uint32_t bit;                      // in `updated`; 0: new at every tick
-  std::size_t begin, size;                // [bytes]
-  std::vector<const Channel*> fields;     // in column order
-  std::vector<const Channel*> times;      // those of `fields` that are times
+  std::uint32_t bit;                   // in `updated`; 0: new at every tick
+  std::size_t begin, size;             // [bytes]
+  std::vector<const Channel*> fields;  // in column order
+  std::vector<const Channel*> times;   // those of `fields` that are times
   bool is_new(const Sample& sample) const { return bit == 0 || (sample.in.updated & bit) != 0; }
   void copy(const Sample& from, Sample& to) const;  // all fields
 };

@@ -105,7 +105,7 @@ Result<std::string> case_of(const HuntInputs& inputs, Level level) {
   if (!trace) return tl::unexpected(trace.error());
   const TraceCase about{inputs.subject.profile,
                         hunt_group,
-                        "Found by attest hunt. TODO: the mistake or property that it tests.",
+                        "Found by attest hunt. Fill in the mistake or property that it tests.",
                         inputs.rate,
                         "The port fails at this rate.",
                         level == Level::exact,

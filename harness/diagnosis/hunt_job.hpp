@@ -38,11 +38,7 @@ class TrialJob final : public PortJob<HuntTrials> {
   // this, and does not change while the job runs.
   TrialJob(std::span<const HuntedTarget> targets, std::uint64_t seed, std::uint64_t first,
            std::size_t count, HostOptions options)
-      : PortJob(std::move(options)),
-        targets_(targets),
-        seed_(seed),
-        first_(first),
-        count_(count) {}
+      : PortJob(std::move(options)), targets_(targets), seed_(seed), first_(first), count_(count) {}
 
   std::size_t size() const override { return 1; }
   Result<HuntTrials> run(std::size_t task) override;

@@ -55,7 +55,7 @@ class Shrinker {
       error_ = trial.error();
       return false;
     }
-    if (!trial->failure || !fail_alike(*trial->failure, best_.failure)) return false;
+    if (!trial->failure || !fail_the_same_way(*trial->failure, best_.failure)) return false;
     best_ = {std::move(candidate), *std::move(trial->failure)};
     return true;
   }
@@ -178,9 +178,8 @@ class Shrinker {
 
   bool is_plain(std::span<const Channel* const> fields, const Sample& plain) const {
     return std::ranges::all_of(best_.inputs.ticks, [&](const HuntTick& tick) {
-      return std::ranges::all_of(fields, [&](const Channel* field) {
-        return same_bits(*field, tick.sample, plain);
-      });
+      return std::ranges::all_of(
+          fields, [&](const Channel* field) { return same_bits(*field, tick.sample, plain); });
     });
   }
 
@@ -227,7 +226,7 @@ class Shrinker {
 
 }  // namespace
 
-bool fail_alike(const VectorResult& one, const VectorResult& other) {
+bool fail_the_same_way(const VectorResult& one, const VectorResult& other) {
   if (one.verdict != other.verdict) return false;
   if (one.first.has_value() != other.first.has_value()) return false;
   return !one.first || one.first->channel == other.first->channel;

@@ -19,6 +19,6 @@ Result<ShrunkTrial> shrink(const HuntTarget& target, HuntInputs inputs, VectorRe
                            const HostOptions& options);
 
 // Whether two failures may have one cause: the same verdict, first in the same output.
-bool fail_alike(const VectorResult& one, const VectorResult& other);
+bool fail_the_same_way(const VectorResult& one, const VectorResult& other);
 
 }  // namespace attest

@@ -134,7 +134,8 @@ Result<void> HuntTrace::next_part(std::size_t most, Trace& part) {
   is_finished_ = part.samples.size() < most;
   ModuleUnderTest subject = inputs_.subject;
   subject.part = {first, is_finished_};
-  if (const auto fault = reference_->drive(subject, part)) return fail("the reference: " + fault->what);
+  if (const auto fault = reference_->drive(subject, part))
+    return fail("the reference: " + fault->what);
   if (meets_ != nullptr) note(part);
   return {};
 }

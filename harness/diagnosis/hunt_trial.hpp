@@ -16,7 +16,8 @@ namespace attest {
 struct HuntTrial {
   std::uint64_t number = 0;
   std::size_t steps = 0;
-  // The largest deviation in units of its tolerance; 0 at the level exact. Of a failure, at least 1.
+  // The largest deviation in units of its tolerance; 0 at the level exact. Of a failure, at
+  // least 1.
   double deviation = 0;
   bool agrees = false;  // all outputs do; false if a deviation did not count
   HuntFeatures meets;
@@ -29,8 +30,8 @@ inline constexpr const char* hunt_group = "hunt";  // of the cases of findings
 // nothing, the constants of the port in place of other values.
 void make_orderly(const Lacks& lacks, HuntInputs& inputs);
 
-// Gives the inputs to a fresh instance, and compares it with the reference. A deviation at the level
-// numeric counts only if rounding cannot explain it: up to its tick, the reference in double
+// Gives the inputs to a fresh instance, and compares it with the reference. A deviation at the
+// level numeric counts only if rounding cannot explain it: up to its tick, the reference in double
 // precision stays well within the tolerances, and no decision of the law is nearer than its margin.
 // Inputs with a feature of `lacks` are not judged. Errors: the reference fails.
 Result<HuntTrial> judge_trial(const HuntInputs& inputs, const Lacks& lacks, PortHost& host,

@@ -76,7 +76,7 @@ std::optional<double> most_gain(const Channel& channel) {
 
 // A value close to `threshold`: float distances at the level exact, beyond the margins of the law
 // at others.
-double beside(double threshold, Level level, HuntRandom& random) {
+double next_to(double threshold, Level level, HuntRandom& random) {
   if (level == Level::exact && random.chance(0.6)) {
     const auto at = static_cast<float>(threshold);
     const float towards = random.chance(0.5) ? 1e30F : -1e30F;
@@ -142,11 +142,16 @@ std::size_t HuntRandom::skewed(std::size_t least, std::size_t most) {
 
 double extreme_value(HuntRandom& random) {
   using limits = std::numeric_limits<float>;
-  constexpr std::array<float, 10> values = {limits::quiet_NaN(), limits::infinity(),
-                                            -limits::infinity(), limits::max(),
-                                            -limits::max(),      limits::min(),
-                                            limits::denorm_min(), -0.0F,
-                                            1e10F,               -1e10F};
+  constexpr std::array<float, 10> values = {limits::quiet_NaN(),
+                                            limits::infinity(),
+                                            -limits::infinity(),
+                                            limits::max(),
+                                            -limits::max(),
+                                            limits::min(),
+                                            limits::denorm_min(),
+                                            -0.0F,
+                                            1e10F,
+                                            -1e10F};
   return random.one_of(values);
 }
 
@@ -157,7 +162,13 @@ double hunt_value(const Channel& channel, Level level, HuntRandom& random) {
   const HuntRow& values = values_of(channel);
   const std::size_t kind = random.below(10);
   if (kind < 2) return random.one_of(values.special);
-  if (kind < 4) return beside(random.one_of(values.special), level, random);
+  if (kind < 4) {
+    const double special = random.one_of(values.special), value = next_to(special, level, random);
+    // Beyond the range of the law only at the level exact.
+    return level == Level::exact
+               ? value
+               : std::clamp(value, std::min(values.least, special), std::max(values.most, special));
+  }
   if (kind < 6) return random.uniform(values.least, values.most) * 0.1;
   return random.uniform(values.least, values.most);
 }
@@ -198,7 +209,8 @@ float hunt_parameter(const Parameter& parameter, Level level, HuntRandom& random
   }
   if (!has_least && !has_most) {  // of the battery
     if (random.chance(0.2)) return parameter.default_value;
-    return static_cast<float>(usual < 0 ? random.uniform(0, 0.05) : usual * random.uniform(0.8, 1.2));
+    return static_cast<float>(usual < 0 ? random.uniform(0, 0.05)
+                                        : usual * random.uniform(0.8, 1.2));
   }
   double value = usual;
   switch (random.below(8)) {
@@ -209,7 +221,7 @@ float hunt_parameter(const Parameter& parameter, Level level, HuntRandom& random
       value = most;
       break;
     case 2:
-      value = beside(random.chance(0.5) ? least : most, level, random);
+      value = next_to(random.chance(0.5) ? least : most, level, random);
       break;
     case 3:
       value = usual * random.uniform(0.5, 2);

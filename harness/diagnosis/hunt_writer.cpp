@@ -25,10 +25,10 @@ class HuntReleases {
   }
 
   bool is_new(std::size_t tick, HuntRandom& random) const {
-    if (kind_ == 0) return false;                              // never
-    if (kind_ <= 4) return tick == 0;                          // once
-    if (kind_ <= 8) return true;                               // at every tick
-    if (kind_ <= 12) return tick % period_ == phase_;          // periodically
+    if (kind_ == 0) return false;                      // never
+    if (kind_ <= 4) return tick == 0;                  // once
+    if (kind_ <= 8) return true;                       // at every tick
+    if (kind_ <= 12) return tick % period_ == phase_;  // periodically
     return (tick == 0 && kind_ != 15) || random.chance(probability_);
   }
 
@@ -39,7 +39,8 @@ class HuntReleases {
 
 class HuntWriter {
  public:
-  HuntWriter(const HuntTarget& target, const HuntTopic& topic, HuntInputs& inputs, HuntRandom& random)
+  HuntWriter(const HuntTarget& target, const HuntTopic& topic, HuntInputs& inputs,
+             HuntRandom& random)
       : target_(target), topic_(topic), inputs_(inputs), random_(random) {}
 
   // Chooses the ticks at which the topic is new, and then writes its values.
@@ -115,10 +116,10 @@ class HuntWriter {
 
   // The attitude of the vehicle at a tick.
   HuntRotation attitude(const Sample& sample) const {
-    const std::string_view topic = info_of(target_.subject.module).is_of_cascade() ||
-                                           info_of(target_.subject.module).is_law()
-                                       ? "in/vehicle_attitude.q[0]"
-                                       : "in/control_state.q[0]";
+    const std::string_view topic =
+        info_of(target_.subject.module).is_of_cascade() || info_of(target_.subject.module).is_law()
+            ? "in/vehicle_attitude.q[0]"
+            : "in/control_state.q[0]";
     const auto first = find_channel(target_.subject.module, topic);
     HuntRotation q{};
     for (std::size_t i = 0; first && i < 4; ++i) q[i] = value_of(channels()[*first + i], sample);

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/core/json_text.hpp"
-#include "harness/golden/decisions.hpp"
 #include "harness/report/conclusion.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/text.hpp"
@@ -43,17 +42,22 @@ std::string resemblance(const HuntFinding& finding) {
 
 std::vector<Cell> row_of(const HuntFinding& finding) {
   const VectorResult& failure = finding.failure;
-  return {Cell(finding.name, failure.verdict), failure.profile, failure.name,
-          failure.rate.to_string(), std::to_string(finding.trace.samples.size()),
-          std::to_string(finding.trials), resemblance(finding)};
+  return {Cell(finding.name, failure.verdict),
+          failure.profile,
+          failure.name,
+          failure.rate.to_string(),
+          std::to_string(finding.trace.samples.size()),
+          std::to_string(finding.trials),
+          resemblance(finding)};
 }
 
 void add_lines(const HuntFinding& finding, const HuntReport::Written& written,
                std::vector<Cell>& lines) {
   lines.emplace_back(fmt::format("{}: {}", finding.name, failure_headline(finding.failure)));
   if (finding.needs_others) {
-    lines.emplace_back("  fails only after other trials in the same process of the port: an "
-                       "earlier instance has left state behind");
+    lines.emplace_back(
+        "  fails only after other trials in the same process of the port: an "
+        "earlier instance has left state behind");
     return;
   }
   if (!written.case_file.empty()) lines.emplace_back("  case: " + written.case_file);

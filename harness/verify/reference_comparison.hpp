@@ -38,8 +38,8 @@ Result<ReferenceComparison> compare_with_reference(const Trace& flown, const std
                                                    const Tolerances& tolerances,
                                                    std::optional<int> fraction_bits = {});
 
-// The first tick, up to `last_tick`, at which a port can make a decision of the law by rounding; with
-// `fraction_bits`, a port in fixed point. Empty if there is none, or if no margins are known
+// The first tick, up to `last_tick`, at which a port can make a decision of the law by rounding;
+// with `fraction_bits`, a port in fixed point. Empty if there is none, or if no margins are known
 // (margin_meter).
 struct NearDecision {
   Decision decision;

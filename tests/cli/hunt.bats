@@ -25,7 +25,7 @@ load common
   made=ours/cases/px4-v1.16.0/hunt/cascade_d_reversed.toml
   has "case: $made"
   [ "$(wc -l <$made)" -lt 40 ]
-  grep -q 'TODO' $made
+  grep -q 'Fill in' $made
   reproduce=$(sed -n "s,.*reproduce: attest,,p" <<<"$output")
   run eval "\"$ATTEST\" $reproduce"
   [ "$status" -eq 1 ]
