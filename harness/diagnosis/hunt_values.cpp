@@ -247,7 +247,28 @@ HuntRotation rotation(const std::array<double, 3>& axis, double angle_rad) {
   return {std::cos(angle_rad / 2), s * axis[0], s * axis[1], s * axis[2]};
 }
 
+// Components that are exactly 0, 1, -1, 1/2 or sqrt(1/2): on thresholds of the law.
+HuntRotation exact_rotation(HuntRandom& random) {
+  HuntRotation q{};
+  const std::size_t first = random.below(4), second = random.below(4);
+  const double side = random.chance(0.5) ? 1 : -1;
+  switch (random.below(4)) {
+    case 0:
+      q[first] = q[second] = std::sqrt(0.5);
+      if (first == second) q[first] = 1;
+      q[second] *= side;
+      return q;
+    case 1:
+      for (double& part : q) part = random.chance(0.5) ? 0.5 : -0.5;
+      return q;
+    default:
+      q[first] = side;
+      return q;
+  }
+}
+
 HuntRotation hunt_rotation(HuntRandom& random) {
+  if (random.chance(0.12)) return exact_rotation(random);
   HuntRotation q = rotation(hunt_axis(random), hunt_angle(random));
   if (random.chance(0.3)) q = product(rotation({0, 0, 1}, random.uniform(-pi, pi)), q);
   if (random.chance(0.3)) {
