@@ -98,6 +98,21 @@ bool has_non_finite(const Trace& right) {
   return false;
 }
 
+// Before the first attitude setpoint, the recovery of a tailsitter takes the direction of a vector of
+// zeros, which depends on their signs.
+bool recovers_without_setpoint(const Trace& right) {
+  const auto enables = [](const ParameterChange& change) {
+    return change.name == "VT_OPT_RECOV_EN" && change.value != 0;
+  };
+  const auto has_no_setpoint = [](const Sample& sample) {
+    const auto& q = sample.in.vehicle_attitude_setpoint.q_d;
+    return q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0;
+  };
+  return module_of(right.present) == Module::mc_att_control &&
+         std::ranges::any_of(right.parameters, enables) &&
+         std::ranges::any_of(right.samples, has_no_setpoint);
+}
+
 // Whether rounding can explain the deviation.
 bool is_excused(const HuntInputs& inputs, const VectorResult& failed,
                 std::optional<int> fraction_bits) {
@@ -106,6 +121,7 @@ bool is_excused(const HuntInputs& inputs, const VectorResult& failed,
   const auto right = begin_of(inputs, last_step);
   if (!right) return true;
   if (fraction_bits && has_non_finite(*right)) return true;
+  if (recovers_without_setpoint(*right)) return true;
   if (failed.verdict == Verdict::non_finite) return false;
   return first_near_decision(inputs.subject, *right, fraction_bits, last_step) ||
          is_by_precision(inputs, *right, fraction_bits);

@@ -23,7 +23,7 @@ struct HuntRow {
 constexpr HuntRow hunt_rows[] = {
     {"throttle", Quantity::stick, -1, 1, {-1, -0.9, 0, 1, -0.5, 0.5}},
     {"z", Quantity::stick, 0, 1, {0, 0.2, 0.9, 1, 0.5, 0.8}},
-    {"", Quantity::stick, -1, 1, {-1, 0, 1, 0.1, -0.1, 0.05}},
+    {"", Quantity::stick, -1.1, 1.1, {-1, 0, 1, 0.1, -0.1, 0.05}},
     {"thrust_body", Quantity::thrust, -1, 0.1, {-1, -0.5, 0, -0.2, -0.9, -0.8}},
     {"thrust", Quantity::thrust, 0, 1.1, {0, 0.2, 0.5, 1, 0.9, 0.3}},
     {"hover_thrust", Quantity::thrust, -0.1, 1, {0, 0.05, 0.9, 0.1, 0.5, 1}},
@@ -72,6 +72,20 @@ std::optional<double> most_gain(const Channel& channel) {
   if (is_indexed(channel.field(), "d")) return 0.01;
   if (is_indexed(channel.field(), "ff")) return 0.5;
   return std::nullopt;
+}
+
+// Inputs for which the law defines what NaN means.
+bool may_be_nan(const Channel& channel) {
+  constexpr std::array<std::string_view, 6> fields = {
+      "in/vehicle_attitude_setpoint.yaw_sp_move_rate",
+      "in/vehicle_rates_setpoint.roll",
+      "in/vehicle_rates_setpoint.pitch",
+      "in/vehicle_rates_setpoint.yaw",
+      "in/hover_thrust_estimate.hover_thrust",
+      "in/vehicle_local_position.unaided_heading"};
+  const bool is_heading = channel.quantity == Quantity::angle;
+  return (info_of(channel.module).is_of_cascade() || is_heading) &&
+         std::ranges::find(fields, channel.name) != fields.end();
 }
 
 // A value close to `threshold`: float distances at the level exact, beyond the margins of the law
@@ -159,6 +173,7 @@ double hunt_value(const Channel& channel, Level level, HuntRandom& random) {
   if (const auto most = most_gain(channel)) {
     return random.chance(0.2) ? 0 : random.uniform(0, *most);
   }
+  if (may_be_nan(channel) && random.chance(0.12)) return std::nan("");
   const HuntRow& values = values_of(channel);
   const std::size_t kind = random.below(10);
   if (kind < 2) return random.one_of(values.special);
@@ -204,7 +219,7 @@ float hunt_parameter(const Parameter& parameter, Level level, HuntRandom& random
                       : parameter.is_integer ? usual + 12
                                              : std::max(4 * usual, 0.05);
   if (parameter.is_integer) {
-    const double integer = std::floor(random.uniform(least, std::min(most, least + 3)));
+    const double integer = std::floor(random.uniform(least, std::min(most + 1, least + 4)));
     return static_cast<float>(random.chance(0.1) ? most : integer);
   }
   if (!has_least && !has_most) {  // of the battery

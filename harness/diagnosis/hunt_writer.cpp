@@ -132,12 +132,22 @@ class HuntWriter {
     const bool turns = !is_calm && random_.chance(0.4);
     const double changes = is_calm ? 0 : change_rate(random_);
     HuntRotation q = is_calm ? HuntRotation{1, 0, 0, 0} : hunt_rotation(random_);
+    // The units normalise setpoints and resets; other forms of the old law need a norm of 1, as that
+    // of an estimator is.
+    const bool is_attitude = topic_.fields[first]->field() == "q[0]" ||
+                             !info_of(target_.subject.module).is_of_cascade();
+    const bool is_exact = target_.level == Level::exact;
+    const double norm = (is_exact || !is_attitude) && random_.chance(0.08)
+                            ? random_.uniform(is_exact ? 0 : 0.5, 2)
+                            : 1;
     const HuntRotation turn = rotation({0.48, 0.6, 0.64}, random_.uniform(-0.05, 0.05));
     for_each_release(window, [&](std::size_t, Sample& sample) {
       if (random_.chance(changes)) q = hunt_rotation(random_);
       if (turns) q = normalised(product(q, turn));
       const HuntRotation value = follows && !is_calm ? normalised(product(attitude(sample), q)) : q;
-      for (std::size_t i = 0; i < 4; ++i) set_value(*topic_.fields[first + i], sample, value[i]);
+      for (std::size_t i = 0; i < 4; ++i) {
+        set_value(*topic_.fields[first + i], sample, value[i] * norm);
+      }
     });
   }
 
