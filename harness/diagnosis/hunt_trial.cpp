@@ -98,8 +98,8 @@ bool has_non_finite(const Trace& right) {
   return false;
 }
 
-// Before the first attitude setpoint, the recovery of a tailsitter takes the direction of a vector of
-// zeros, which depends on their signs.
+// Before the first attitude setpoint, the recovery of a tailsitter takes the direction of a vector
+// of zeros, which depends on their signs.
 bool recovers_without_setpoint(const Trace& right) {
   const auto enables = [](const ParameterChange& change) {
     return change.name == "VT_OPT_RECOV_EN" && change.value != 0;

@@ -132,10 +132,10 @@ class HuntWriter {
     const bool turns = !is_calm && random_.chance(0.4);
     const double changes = is_calm ? 0 : change_rate(random_);
     HuntRotation q = is_calm ? HuntRotation{1, 0, 0, 0} : hunt_rotation(random_);
-    // The units normalise setpoints and resets; other forms of the old law need a norm of 1, as that
-    // of an estimator is.
-    const bool is_attitude = topic_.fields[first]->field() == "q[0]" ||
-                             !info_of(target_.subject.module).is_of_cascade();
+    // The units normalise setpoints and resets; other forms of the old law need a norm of 1, as
+    // that of an estimator is.
+    const bool is_attitude =
+        topic_.fields[first]->field() == "q[0]" || !info_of(target_.subject.module).is_of_cascade();
     const bool is_exact = target_.level == Level::exact;
     const double norm = (is_exact || !is_attitude) && random_.chance(0.08)
                             ? random_.uniform(is_exact ? 0 : 0.5, 2)
