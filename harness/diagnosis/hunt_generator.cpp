@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "harness/diagnosis/hunt_trial.hpp"
@@ -86,14 +87,14 @@ void choose_parameters(const HuntTarget& target, HuntInputs& inputs, HuntRandom&
   }
 }
 
-// At the level exact: NaN, infinities and other extremes in a few fields.
+// NaN in a few fields; at the level exact also infinities and other extremes.
 void add_extremes(const HuntTarget& target, HuntInputs& inputs, HuntRandom& random) {
   const auto topics = hunt_topics(target.subject.module);
   for (std::size_t count = 1 + random.below(3); count > 0; --count) {
     const HuntTopic& topic = topics[random.below(topics.size())];
     const Channel& field = *topic.fields[random.below(topic.fields.size())];
     if (field.type != ChannelType::f32) continue;
-    const double value = extreme_value(random);
+    const double value = target.level == Level::exact ? extreme_value(random) : std::nan("");
     const HuntWindow window = window_in(inputs.ticks.size(), random);
     const double share = random.chance(0.5) ? 1 : 0.1;
     for (std::size_t tick = window.begin; tick < window.end; ++tick) {
@@ -150,7 +151,8 @@ HuntInputs fresh_trial(const HuntTarget& target, HuntRandom& random) {
   }
   choose_gaps(target, inputs, random);
   choose_parameters(target, inputs, random);
-  if (target.level == Level::exact && random.chance(0.4)) add_extremes(target, inputs, random);
+  const double extremes = target.level == Level::exact ? 0.4 : target.is_fixed_point ? 0 : 0.06;
+  if (random.chance(extremes)) add_extremes(target, inputs, random);
   return inputs;
 }
 
