@@ -5,7 +5,7 @@ load common
   [ "$status" -eq 0 ]
   has "PASS 0 findings"
   grep -q '"findings": \[\]' found.json
-  run "$ATTEST" hunt --steps 100000 --level exact --module mc_att_control --port "lib:$STARTER"
+  run "$ATTEST" hunt --steps 100000 --level exact
   [ "$status" -eq 0 ]
   for port in right_quaternion right_cascade_fixed_22 right_pure_laws_16; do
     run "$ATTEST" hunt --steps 100000 --port "lib:$PORTS/$port.so"
