@@ -7,11 +7,13 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/casefile/baseline.hpp"
 #include "harness/casefile/parse.hpp"
 #include "harness/casefile/parse_limits.hpp"
 #include "harness/core/agreement.hpp"
@@ -26,11 +28,13 @@ constexpr double us_per_s = 1e6;
 
 double seconds(std::uint64_t time_us) { return static_cast<double>(time_us) / us_per_s; }
 
-// Ticks [begin, end) of a log.
+// Ticks [begin, end) of a log or, if it has a rate, of a trace whose ticks are at multiples of the
+// period.
 struct Ticks {
   const Trace& log;
   std::size_t begin = 0, end = 0;
   Module module = Module::mc_att_control;
+  std::optional<Rate> rate = {};
 
   std::size_t size() const { return end - begin; }
   const Sample& operator[](std::size_t tick) const { return log.samples[tick]; }
@@ -39,6 +43,17 @@ struct Ticks {
     return log.samples[tick].in.timestamp - log.samples[begin].in.timestamp;
   }
   double time_s(std::size_t tick) const { return seconds(time_us(tick)); }
+  // In periods, or without a rate in seconds. A key of the time ends with unit().
+  double time(std::size_t tick) const {
+    return rate ? static_cast<double>(period(tick)) : time_s(tick);
+  }
+  const char* unit() const { return rate ? "ticks" : "s"; }
+  // The period whose begin, in whole microseconds, is the time of the tick. REQUIRES: a rate.
+  std::int64_t period(std::size_t tick) const {
+    const auto time = static_cast<std::int64_t>(time_us(tick));
+    const Nanoseconds next{(time + 1) * 1000};  // the first nanosecond after this microsecond
+    return rate->ticks_in(next) - 1;
+  }
   // The time from the first tick to the last, plus one mean period. REQUIRES: two ticks.
   std::uint64_t duration_us() const {
     const std::uint64_t whole = time_us(end - 1);
@@ -49,23 +64,26 @@ struct Ticks {
 // The values of a field or a parameter over time. Repeated values are left out.
 class History {
  public:
-  void add(double time_s, double value) {
+  void add(double time, double value) {
     if (!values_.empty() && same_bits(values_.back(), value)) return;
-    times_s_.push_back(time_s);
+    times_.push_back(time);
     values_.push_back(value);
   }
 
   bool is_constant() const { return values_.size() == 1; }
+  bool is_always(double value) const { return is_constant() && same_bits(values_.front(), value); }
 
-  void write(std::string_view table, std::string_view key, TomlWriter& toml) const {
+  // `unit`: Ticks::unit().
+  void write(std::string_view table, std::string_view key, const std::string& unit,
+             TomlWriter& toml) const {
     if (is_constant()) return toml.set(table, key, values_.front());
     toml.set(table, key, "signal", "samples");
-    toml.set(table, key, "times_s", times_s_);
+    toml.set(table, key, "times_" + unit, times_);
     toml.set(table, key, "values", values_);
   }
 
  private:
-  std::vector<double> times_s_;
+  std::vector<double> times_;
   std::vector<double> values_;
 };
 
@@ -93,9 +111,14 @@ double seconds_from(std::uint64_t from_us, std::uint64_t time_us) {
   return static_cast<double>(static_cast<std::int64_t>(time_us - from_us)) / us_per_s;
 }
 
+// The number with the fewest digits that becomes the same float.
+double short_decimal(double value) {
+  return std::isfinite(value) ? std::stod(fmt::format("{}", static_cast<float>(value))) : value;
+}
+
 // The value of a field as the case has it: times since the tick that received the sample,
-// armed_time since the first tick (SCHEMA.md). The reset counter counts from the first tick on,
-// because the unit that starts there knows of no earlier reset.
+// armed_time since the first tick (SCHEMA.md). The reset counter of a log counts from the first
+// tick on, because the unit that starts there knows of no earlier reset.
 double case_value(const Ticks& ticks, std::size_t tick, const Channel& channel) {
   const Sample& sample = ticks[tick];
   if (channel.type == ChannelType::u64) {
@@ -103,13 +126,15 @@ double case_value(const Ticks& ticks, std::size_t tick, const Channel& channel) 
     return seconds_from(ticks[of_start ? ticks.begin : tick].in.timestamp,
                         integer_of(channel, sample));
   }
-  const double value = value_of(channel, sample);
-  if (!channel.name.ends_with(".quat_reset_counter")) return value;
+  double value = value_of(channel, sample);
+  if (ticks.rate && channel.type == ChannelType::f32) value = short_decimal(value);
+  if (ticks.rate || !channel.name.ends_with(".quat_reset_counter")) return value;
   const auto since_begin = static_cast<int>(value - value_of(channel, ticks[ticks.begin]));
   return static_cast<std::uint8_t>(since_begin);  // modulo 256, as the counter
 }
 
-// Writes the fields of a topic. Returns whether each field is constant.
+// Writes the fields of a topic; with a rate, without those that have the baseline. Returns whether
+// each field is constant.
 bool write_fields(const Ticks& ticks, std::string_view topic,
                   const std::vector<std::size_t>& released, TomlWriter& toml) {
   bool is_constant = true;
@@ -119,9 +144,14 @@ bool write_fields(const Ticks& ticks, std::string_view topic,
     if (!fields[i] || channel.is_output()) continue;
     History history;
     for (const std::size_t tick : released) {
-      history.add(ticks.time_s(tick), case_value(ticks, tick, channel));
+      history.add(ticks.time(tick), case_value(ticks, tick, channel));
     }
-    history.write(topic, channel.field(), toml);
+    const double plain =
+        channel.type == ChannelType::f32 ? short_decimal(baseline(channel)) : baseline(channel);
+    // The table of a battery makes the case one of a battery estimate.
+    const bool may_be_left_out = ticks.rate && ticks.module != Module::battery_status;
+    const bool is_left_out = may_be_left_out && history.is_always(plain);
+    if (!is_left_out) history.write(topic, channel.field(), ticks.unit(), toml);
     is_constant = is_constant && history.is_constant();
   }
   return is_constant;
@@ -132,12 +162,22 @@ void write_topic(const Ticks& ticks, std::string_view topic, std::uint32_t bit, 
   if (released.empty()) return toml.set(topic, "publish", "never");
   const bool is_constant = write_fields(ticks, topic, released, toml);
   if (is_constant && released == std::vector{ticks.begin}) return;
-  std::vector<double> times_s;
-  for (const std::size_t tick : released) times_s.push_back(ticks.time_s(tick));
-  toml.set(topic, "publish_at_s", times_s);
+  std::vector<double> times;
+  for (const std::size_t tick : released) times.push_back(ticks.time(tick));
+  toml.set(topic, fmt::format("publish_at_{}", ticks.unit()), times);
+}
+
+// Of a module whose topics are all new at every tick.
+void write_topics_without_bits(const Ticks& ticks, TomlWriter& toml) {
+  std::set<std::string_view> topics;
+  const ChannelSet inputs = channels_of(ticks.module, "in/");
+  for (std::size_t i = 0; i < channels().size(); ++i)
+    if (inputs[i]) topics.insert(channels()[i].topic());
+  for (const std::string_view topic : topics) write_fields(ticks, topic, all_of(ticks), toml);
 }
 
 void write_topics(const Ticks& ticks, TomlWriter& toml) {
+  if (!info_of(ticks.module).is_unit()) return write_topics_without_bits(ticks, toml);
   write_fields(ticks, info_of(ticks.module).step_topic, all_of(ticks), toml);
   for (const std::string_view topic : updated_topics(ticks.module)) {
     if (topic == "parameter_update") continue;
@@ -172,9 +212,9 @@ void write_parameters(const Ticks& ticks, const std::string& profile, TomlWriter
     if (!before || std::find(own.begin(), own.end(), change.name) == own.end()) continue;
     const auto [history, is_first] = histories.try_emplace(change.name);
     if (is_first) history->second.add(0, *before);
-    history->second.add(ticks.time_s(change.tick), change.value);
+    history->second.add(ticks.time(change.tick), change.value);
   }
-  for (const auto& [name, history] : histories) history.write("parameters", name, toml);
+  for (const auto& [key, values] : histories) values.write("parameters", key, ticks.unit(), toml);
 }
 
 std::string identifier(std::string text) {
@@ -269,6 +309,42 @@ Result<LogCase> case_of_log(const Trace& log, const std::string& profile, const 
   write_topics(*ticks, toml);
   made.toml = toml.to_string();
   return made;
+}
+
+namespace {
+
+// The module of the case, and the ticks at which it runs.
+void write_ticks(const Ticks& ticks, const TraceCase& about, TomlWriter& toml) {
+  const ModuleInfo& info = info_of(ticks.module);
+  if (info.is_of_cascade() || info.is_law()) toml.set("", "module", info.name);
+  if (ticks.module == Module::mixer) toml.set("mixer", "definition", about.mixer);
+  toml.set("", "rates_hz", std::vector<double>{about.rate.hertz()});
+  toml.set("", "rates_why", about.rates_why);
+  toml.set("", "duration_ticks", ticks.period(ticks.end - 1) + 1);
+  if (!info.is_unit()) return;
+  toml.set("unit", "start_s", seconds(ticks[ticks.begin].in.timestamp));
+  std::vector<std::int64_t> dropped;
+  std::int64_t next = 0;  // period
+  for (std::size_t tick = ticks.begin; tick < ticks.end; ++tick, ++next) {
+    for (; next < ticks.period(tick); ++next) dropped.push_back(next);
+  }
+  if (!dropped.empty()) toml.set("unit", "drop_ticks", dropped);
+}
+
+}  // namespace
+
+std::string case_of_trace(const Trace& trace, const TraceCase& about) {
+  const Ticks ticks{trace, 0, trace.samples.size(), module_of(trace.present), about.rate};
+  TomlWriter toml;
+  toml.set("", "schema", schema_version);
+  toml.set("", "profiles", std::vector<std::string>{about.profile});
+  toml.set("", "group", about.group);
+  toml.set("", "why", about.why);
+  if (about.exact_only) toml.set("", "level", "exact");
+  write_ticks(ticks, about, toml);
+  write_parameters(ticks, about.profile, toml);
+  write_topics(ticks, toml);
+  return toml.to_string();
 }
 
 }  // namespace attest

@@ -1,4 +1,5 @@
-// Makes a case of a part of a flight's log. The inputs become signals of the kind `samples`.
+// Makes a case of a part of a flight's log, or of a trace. The inputs become signals of the kind
+// `samples`.
 #pragma once
 
 #include <cstddef>
@@ -6,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/core/rate.hpp"
 #include "harness/core/result.hpp"
 #include "harness/trace/trace.hpp"
 
@@ -39,5 +41,19 @@ struct LogCase {
 // with too many ticks for a case (max_ticks) at the fastest rate.
 Result<LogCase> case_of_log(const Trace& log, const std::string& profile, const LogPart& part,
                             const std::vector<std::string>& notes);
+
+// What a case of a trace says in addition to its inputs.
+struct TraceCase {
+  std::string profile, group, why;
+  Rate rate = Rate::hz(250);
+  std::string rates_why;
+  bool exact_only = false;
+  std::string mixer = {};  // only for Module::mixer: its definition
+};
+
+// The text of a case that gives a module exactly the inputs of `trace`, at `about.rate`. Values
+// that are the baseline are left out. REQUIRES: each tick of the trace is at a multiple of the
+// period, rounded down to whole microseconds; a topic changes only at a tick that has its bit.
+std::string case_of_trace(const Trace& trace, const TraceCase& about);
 
 }  // namespace attest

@@ -136,9 +136,9 @@ void add_help(const CommandLine& line) {
 
 // In the order of --help.
 constexpr std::array every_command{
-    add_run,     add_merge,  add_sim,      add_stress,  add_sweep, add_sweep_rate, add_schedule,
-    add_time,    add_replay, add_record,   add_compare, add_plot,  add_faults,     add_list,
-    add_vectors, add_bless,  add_new_port, add_doctor,  add_smoke, add_help};
+    add_run,      add_hunt,    add_merge,  add_sim,      add_stress,  add_sweep, add_sweep_rate,
+    add_schedule, add_time,    add_replay, add_record,   add_compare, add_plot,  add_faults,
+    add_list,     add_vectors, add_bless,  add_new_port, add_doctor,  add_smoke, add_help};
 
 // Returns the exit code if the command line is wrong, or only asks for help or the version. Empty:
 // the command must run.

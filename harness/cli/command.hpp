@@ -106,6 +106,7 @@ struct CommandLine {
 
 // Each declares a command, in the file that has its options and its work.
 void add_run(const CommandLine& line);
+void add_hunt(const CommandLine& line);
 void add_merge(const CommandLine& line);
 void add_sim(const CommandLine& line);
 void add_stress(const CommandLine& line);

@@ -8,12 +8,11 @@
 #include <fmt/format.h>
 
 #include "harness/casefile/log_case.hpp"
-#include "harness/casefile/parse.hpp"
 #include "harness/cli/outputs.hpp"
+#include "harness/cli/own_suite.hpp"
 #include "harness/cli/read_log.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/cli/vectors.hpp"
-#include "harness/core/file.hpp"
 #include "harness/core/suggestion.hpp"
 #include "harness/port/profiles.hpp"
 #include "harness/ulog/single_steps.hpp"
@@ -38,31 +37,6 @@ Result<std::string> profile_in(const VectorOptions& options) {
   const auto& profiles = options.select.profiles;
   if (profiles.size() > 1) return fail("--profile is given twice; a case of a log has one");
   return profiles.empty() ? std::string() : profiles.front();
-}
-
-// A folder that is not a suite becomes a suite whose base is the released suite.
-Result<void> make_suite(const fs::path& root, const fs::path& case_folder) {
-  std::error_code failed;
-  const bool is_suite = fs::exists(root / "cases", failed) || fs::exists(root / base_file, failed);
-  fs::create_directories(case_folder, failed);
-  if (failed) return fail_at(case_folder.string(), "cannot be made: " + failed.message());
-  return is_suite ? Result<void>() : write_file(root / base_file, "released\n");
-}
-
-// Errors: the file exists; the log has values that no case can have. In the second case the file is
-// removed again.
-Result<void> write_case(const fs::path& file, const LogCase& made) {
-  std::error_code failed;
-  if (fs::exists(fs::symlink_status(file, failed))) {
-    return fail_at(file.string(),
-                   "exists, and is not overwritten; name another folder, or remove it with its "
-                   "golden");
-  }
-  if (auto written = write_file(file, made.toml); !written) return written;
-  const auto parsed = parse_case(file);
-  if (parsed) return {};
-  fs::remove(file, failed);
-  return tl::unexpected(parsed.error());
 }
 
 struct WrittenCase {
@@ -121,11 +95,12 @@ Result<std::vector<WrittenCase>> write_cases_of_log(const VectorOptions& options
   auto cases = cases_of(options, *log);
   if (!cases) return tl::unexpected(cases.error());
   const fs::path folder = root / "cases" / log->profile / log_case_group;
-  if (auto ready = make_suite(root, folder); !ready) return tl::unexpected(ready.error());
+  if (auto ready = make_own_suite(root, folder); !ready) return tl::unexpected(ready.error());
   std::vector<WrittenCase> all;
   for (LogCase& made : *cases) {
     const fs::path file = folder / (made.name + ".toml");
-    if (auto written = write_case(file, made); !written) return tl::unexpected(written.error());
+    if (auto written = write_new_case(file, made.toml); !written)
+      return tl::unexpected(written.error());
     all.push_back({file, std::move(made)});
   }
   print_notes(options.from_log, log->notes);

@@ -113,6 +113,7 @@ class TomlWriter {
   void set(std::string_view table, std::string_view key, const std::vector<std::string>& values);
 
   void set(std::string_view table, std::string_view key, const std::vector<double>& values);
+  void set(std::string_view table, std::string_view key, const std::vector<std::int64_t>& values);
   // Sets `key` of the table `inner`, which is in `table`.
   void set(std::string_view table, std::string_view inner, std::string_view key,
            std::string_view value);

@@ -44,6 +44,10 @@ void TomlWriter::set(std::string_view table, std::string_view key,
                      const std::vector<double>& values) {
   impl_->at(table).insert_or_assign(key, array_of(values));
 }
+void TomlWriter::set(std::string_view table, std::string_view key,
+                     const std::vector<std::int64_t>& values) {
+  impl_->at(table).insert_or_assign(key, array_of(values));
+}
 void TomlWriter::set(std::string_view table, std::string_view inner, std::string_view key,
                      std::string_view value) {
   Impl::in(impl_->at(table), inner).insert_or_assign(key, std::string(value));

@@ -76,7 +76,8 @@ Result<ReferenceComparison> compare_with_reference(const Trace& flown, const std
 }
 
 std::optional<NearDecision> first_near_decision(const ModuleUnderTest& subject, const Trace& given,
-                                                int fraction_bits, std::size_t last_tick) {
+                                                std::optional<int> fraction_bits,
+                                                std::size_t last_tick) {
   const auto meter = margin_meter(subject);
   if (!meter) return std::nullopt;
   PendingChanges changes(given.parameters);

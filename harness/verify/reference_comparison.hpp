@@ -38,13 +38,15 @@ Result<ReferenceComparison> compare_with_reference(const Trace& flown, const std
                                                    const Tolerances& tolerances,
                                                    std::optional<int> fraction_bits = {});
 
-// The first tick, up to `last_tick`, at which a port with so many fraction bits can make a decision
-// of the law by rounding. Empty if there is none, or if no margins are known (margin_meter).
+// The first tick, up to `last_tick`, at which a port can make a decision of the law by rounding;
+// with `fraction_bits`, a port in fixed point. Empty if there is none, or if no margins are known
+// (margin_meter).
 struct NearDecision {
   Decision decision;
   std::size_t tick;
 };
 std::optional<NearDecision> first_near_decision(const ModuleUnderTest& subject, const Trace& given,
-                                                int fraction_bits, std::size_t last_tick);
+                                                std::optional<int> fraction_bits,
+                                                std::size_t last_tick);
 
 }  // namespace attest

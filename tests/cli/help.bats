@@ -1,6 +1,6 @@
 load common
 
-commands=(run replay sim stress sweep sweep-rate schedule time compare plot record faults list
+commands=(run hunt replay sim stress sweep sweep-rate schedule time compare plot record faults list
   vectors bless new-port doctor smoke)
 
 @test "each command shows examples of itself, with options that it has" {

@@ -1,0 +1,336 @@
+#include "harness/diagnosis/hunt.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/resource.h>
+
+#include "harness/cli/outputs.hpp"
+#include "harness/cli/own_suite.hpp"
+#include "harness/cli/shared_arguments.hpp"
+#include "harness/core/file.hpp"
+#include "harness/core/interrupt.hpp"
+#include "harness/core/suggestion.hpp"
+#include "harness/core/version.hpp"
+#include "harness/port/profiles.hpp"
+#include "harness/report/hunt_document.hpp"
+#include "harness/report/report.hpp"
+#include "harness/report/text.hpp"
+#include "harness/trace/csv.hpp"
+
+namespace attest::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+struct HuntCommandOptions {
+  HostOptions host;
+  std::vector<std::string> profiles, modules;  // empty: all of the port
+  std::string level = "numeric";
+  std::uint64_t seed = 1;
+  std::optional<double> steps, seconds;
+  int jobs = 1;
+  std::string out, json, junit, html;
+};
+
+constexpr double usual_steps = 1e6;
+
+double cpu_s(int who) {
+  rusage usage{};
+  getrusage(who, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+double all_cpu_s() { return cpu_s(RUSAGE_SELF) + cpu_s(RUSAGE_CHILDREN); }
+
+Result<ModuleSet> modules_of(const HuntCommandOptions& options) {
+  ModuleSet chosen;
+  for (const std::string& name : options.modules) {
+    const auto module = module_named(name);
+    if (!module) {
+      const auto names = names_of(ModuleSet().set());
+      return fail(fmt::format("--module {}: no such module{}; there are {}", name,
+                              suggestion(name, {names.begin(), names.end()}),
+                              fmt::join(names, ", ")));
+    }
+    chosen |= only(*module);
+  }
+  return options.modules.empty() ? ModuleSet().set() : chosen;
+}
+
+// The modules of the port in its profiles. Errors: it has none of those that were asked for.
+Result<std::vector<ModuleUnderTest>> subjects_of(const HuntCommandOptions& options,
+                                                 const PortDescription& port) {
+  const auto chosen = modules_of(options);
+  if (!chosen) return tl::unexpected(chosen.error());
+  std::vector<ModuleUnderTest> subjects;
+  for (const ProfileInfo& profile : known_profiles()) {
+    const std::string name(profile.name);
+    if (std::ranges::find(port.profiles, name) == port.profiles.end()) continue;
+    for (const ModuleInfo& info : modules()) {
+      const bool is_hunted = contains(profile.modules, info.module) &&
+                             contains(port.modules, info.module) && contains(*chosen, info.module);
+      if (is_hunted) subjects.push_back({name, info.module});
+    }
+  }
+  if (!subjects.empty()) return subjects;
+  return fail(fmt::format("the port {} has no such module in these profiles: {} of {}",
+                          options.host.port, fmt::join(names_of(*chosen), ", "),
+                          fmt::join(options.profiles, ", ")));
+}
+
+Result<void> check_profiles(const std::vector<std::string>& profiles) {
+  const auto names = known_profile_names();
+  for (const std::string& profile : profiles) {
+    if (find_profile(profile) != nullptr) continue;
+    return fail(fmt::format("--profile {}: unknown{}", profile,
+                            suggestion(profile, {names.begin(), names.end()})));
+  }
+  return {};
+}
+
+// A line for each round, which on a terminal replaces the last one.
+class HuntProgressLine {
+ public:
+  explicit HuntProgressLine(bool is_quiet)
+      : is_visible_(!is_quiet && terminal_style(stderr).width > 0), begin_(Clock::now()) {}
+  ~HuntProgressLine() { erase(); }
+
+  void show(const HuntProgress& now) const {
+    if (!is_visible_) return;
+    const double passed_s = std::chrono::duration<double>(Clock::now() - begin_).count();
+    fmt::print(stderr,
+               "\r\x1b[K{} steps, {:.0f} steps/s, {} met, {} failing trials, largest deviation "
+               "of others {:.3f} of the tolerance",
+               now.steps, static_cast<double>(now.steps) / passed_s, now.met.count(), now.failures,
+               now.deviation);
+    std::fflush(stderr);
+  }
+  void erase() const {
+    if (is_visible_) fmt::print(stderr, "\r\x1b[K");
+  }
+
+ private:
+  bool is_visible_;
+  Clock::time_point begin_;
+};
+
+// A name for which `folder` has no other case: "cascade_d_reversed_2".
+std::string free_name(const fs::path& folder, const HuntFinding& finding) {
+  for (int number = 1;; ++number) {
+    std::string name = number == 1 ? finding.name : fmt::format("{}_{}", finding.name, number);
+    std::error_code failed;
+    if (!fs::exists(fs::symlink_status(folder / (name + ".toml"), failed))) return name;
+  }
+}
+
+std::string replay_command(const fs::path& trace, const HuntFinding& finding,
+                           const HuntReport& report, const std::string& mixer) {
+  std::string command =
+      fmt::format("attest replay {} --port {} --profile {}", shell_word(trace.string()),
+                  shell_word(report.run.port), finding.failure.profile);
+  if (report.run.level == Level::exact) command += " --level exact";
+  if (!mixer.empty()) command += " --mixer " + shell_word(mixer);
+  return command;
+}
+
+// Writes each finding as a case of the suite `out`, and its inputs with the right outputs as a
+// trace.
+Result<void> write_findings(const std::string& out, HuntReport& report) {
+  for (HuntFinding& finding : report.found.findings) {
+    HuntReport::Written& written = report.written.emplace_back();
+    if (out.empty() || finding.needs_others) continue;
+    const fs::path root = out;
+    const fs::path folder = root / "cases" / finding.failure.profile / hunt_group;
+    const fs::path traces = root / "traces" / finding.failure.profile / hunt_group;
+    if (auto made = make_own_suite(root, folder); !made) return made;
+    std::error_code failed;
+    fs::create_directories(traces, failed);
+    if (failed) return fail_at(traces.string(), "cannot be made: " + failed.message());
+    finding.name = free_name(folder, finding);
+    const fs::path file = folder / (finding.name + ".toml"),
+                   trace = traces / (finding.name + ".csv");
+    if (auto done = write_new_case(file, finding.toml); !done) return done;
+    if (auto done = write_csv(trace, finding.trace, all_columns(finding.trace)); !done) return done;
+    written = {file.string(), trace.string(),
+               replay_command(trace, finding, report, finding.mixer)};
+  }
+  return {};
+}
+
+struct HuntPlan {
+  HuntOptions hunt;
+  HostOptions host;
+  HuntReport report;
+};
+
+Result<HuntPlan> make_hunt_plan(const HuntCommandOptions& options) {
+  HuntPlan plan;
+  const auto level = parse_level(options.level);
+  if (!level) return tl::unexpected(level.error());
+  if (*level == Level::events) return fail("--level events: a hunt compares values or bits");
+  if (auto known = check_profiles(options.profiles); !known) return tl::unexpected(known.error());
+  plan.host = options.host;
+  plan.host.stop = interrupted;
+  auto port =
+      prepare_port(plan.host, options.profiles.empty() ? known_profile_names() : options.profiles);
+  if (!port) return tl::unexpected(port.error());
+  auto subjects = subjects_of(options, *port);
+  if (!subjects) return tl::unexpected(subjects.error());
+  plan.hunt.subjects = *std::move(subjects);
+  plan.hunt.level = *level;
+  plan.hunt.seed = options.seed;
+  const double steps = options.steps.value_or(options.seconds ? 1e15 : usual_steps);
+  plan.hunt.least_steps = static_cast<std::size_t>(steps);
+  plan.hunt.processes = options.jobs;
+  plan.hunt.stop = interrupted;
+  RunResult& run = plan.report.run;
+  run.attest_version = version;
+  run.command = "hunt";
+  run.port = options.host.port;
+  run.port_name = port->name;
+  run.port_version = port->version;
+  run.level = *level;
+  plan.report.seed = options.seed;
+  return plan;
+}
+
+int hunt_command(const HuntCommandOptions& options, const Globals& globals) {
+  note_interrupts();
+  const auto checked = check_outputs({options.json, options.junit, options.html},
+                                     {options.host.port, {}}, globals.suite);
+  if (!checked) return report_error(checked.error());
+  if (!options.out.empty()) {
+    if (auto own = check_own_suite(options.out); !own) return report_error(own.error());
+  }
+  auto json = AtomicFile::open(options.json);
+  if (!json) return report_error(json.error());
+  auto junit = AtomicFile::open(options.junit);
+  if (!junit) return report_error(junit.error());
+  auto html = AtomicFile::open(options.html);
+  if (!html) return report_error(html.error());
+  auto plan = make_hunt_plan(options);
+  if (!plan) return report_error(plan.error());
+  const HuntProgressLine line(globals.quiet);
+  const auto begin = Clock::now();
+  plan->hunt.is_over = [&] {
+    const std::chrono::duration<double> passed = Clock::now() - begin;
+    return options.seconds && passed.count() >= *options.seconds;
+  };
+  plan->hunt.on_round = [&](const HuntProgress& now) { line.show(now); };
+  auto found = hunt(plan->hunt, plan->host);
+  line.erase();
+  if (interrupted()) return exit_interrupted;
+  if (!found) return report_error(found.error());
+  if (auto same = check_port(plan->host); !same) return report_error(same.error());
+  HuntReport& report = plan->report;
+  report.found = *std::move(found);
+  if (auto written = write_findings(options.out, report); !written) {
+    return report_error(written.error());
+  }
+  const Document document = hunt_document(report);
+  for (const auto& written :
+       {json->commit(hunt_json(report)), junit->commit(junit_report(run_of(report))),
+        html->commit(html_page(document))}) {
+    if (!written) return report_error(written.error());
+  }
+  const bool is_clean = report.found.findings.empty();
+  if (!globals.quiet || !is_clean) fmt::print("{}", render_text(document, terminal_style(stdout)));
+  if (!globals.quiet) {
+    const double cpu = all_cpu_s();
+    fmt::print(stderr, "attest: {} steps in {:.1f} s of CPU time, {:.0f} steps/s\n",
+               report.found.progress.steps, cpu,
+               static_cast<double>(report.found.progress.steps) / std::max(cpu, 1e-3));
+  }
+  return is_clean ? exit_ok : exit_failed;
+}
+
+void add_budget(Command command, HuntCommandOptions& options) {
+  command.option("--seed", options.seed, "Another seed makes other trials")
+      .type("N")
+      .shows_default();
+  command
+      .option("--steps", options.steps,
+              "End after the round in which the port has made so many steps; default: 1000000, "
+              "or no limit with --seconds")
+      .type("N")
+      .positive();
+  command
+      .option("--seconds", options.seconds,
+              "End after the round in which so much time has passed [s]; findings then depend on "
+              "the speed of the machine")
+      .type("S")
+      .positive();
+}
+
+void add_hunt_reports(Command command, HuntCommandOptions& options) {
+  command
+      .option("--out", options.out,
+              "Write each finding as a case of this suite of yours (group `hunt`), and its inputs "
+              "and right outputs as a trace")
+      .type("DIR")
+      .group(option_group::reports);
+  add_page(command, options.html, "a page with the findings");
+  command.option("--json", options.json, "Write the findings as JSON")
+      .type("F")
+      .group(option_group::reports);
+  command.option("--junit", options.junit, "Write a JUnit XML report")
+      .type("F")
+      .group(option_group::reports);
+}
+
+}  // namespace
+
+void add_hunt(const CommandLine& line) {
+  auto options = std::make_shared<HuntCommandOptions>();
+  const Command command = line.add(
+      "hunt", "Search for inputs on which a port differs from the reference, beyond the suite");
+  add_port(command, options->host);
+  add_port_argument(command, options->host);
+  command
+      .option("--profile", options->profiles,
+              "Only these versions of the law, separated by commas; default: all of the port")
+      .type("PROFILE")
+      .separated_by_commas()
+      .one_each_time()
+      .rewritten(full_profile_name)
+      .group(option_group::selection);
+  command
+      .option("--module", options->modules,
+              fmt::format("Only these modules, separated by commas: `{}`; default: all of the port",
+                          fmt::join(names_of(ModuleSet().set()), "`, `")))
+      .type("MODULE")
+      .separated_by_commas()
+      .one_each_time()
+      .group(option_group::selection);
+  command
+      .option("--level", options->level,
+              "What counts as a difference: `exact` (any bit) or `numeric` (beyond the tolerances, "
+              "if rounding cannot explain it)")
+      .type("LEVEL")
+      .shows_default()
+      .group(option_group::strictness);
+  add_budget(command, *options);
+  add_jobs(command, options->jobs, "Number of worker processes; does not change the findings");
+  add_timeout(command, options->host.timeout_s);
+  add_hunt_reports(command, *options);
+  command.examples(
+      {{"attest hunt --port lib:./libmine.so", "a million steps of all modules"},
+       {"attest hunt --port lib:./libmine.so --module rate_unit --seconds 60 --out ours",
+        "search for a minute, and write what is found as cases of the suite `ours`"},
+       {"attest hunt --port lib:./libmine.so --level exact --seed 2",
+        "look for any other bit, with other trials"}});
+  command.runs(options, hunt_command);
+}
+
+}  // namespace attest::cli

@@ -1,0 +1,273 @@
+#include "harness/diagnosis/hunt.hpp"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "harness/casefile/parse.hpp"
+#include "harness/casefile/stimulus.hpp"
+#include "harness/diagnosis/diagnose_run.hpp"
+#include "harness/diagnosis/hunt_job.hpp"
+#include "harness/diagnosis/hunt_shrink.hpp"
+#include "harness/golden/reference.hpp"
+#include "harness/port/features.hpp"
+#include "harness/port/port.hpp"
+
+namespace attest {
+namespace {
+
+// A round: parts that have a process of the port each, with so many trials. A program is slow.
+constexpr std::size_t parts_of_round = 8;
+constexpr std::size_t trials_of_part = 128, trials_of_part_of_program = 16;
+
+// Kept inputs of all targets together: they are in memory.
+constexpr std::size_t most_kept = 1500;
+// Trials that are shrunk, of those that fail first in the same output.
+constexpr std::size_t most_same = 3;
+// Trials that pass, to tell faults apart.
+constexpr std::size_t most_passing_trials = 8;
+
+struct Failure {
+  std::size_t target;
+  HuntInputs inputs;
+  VectorResult result;
+  std::size_t same = 0;  // later trials that failed in the same way
+};
+
+// What the port declares that it lacks; a group of cases that it does not support, too, if it is
+// named after a feature.
+Lacks lacks_of(const Declarations& port) {
+  Lacks lacks = port.lacks;
+  for (const std::string& group : port.unsupported_groups) {
+    if (const auto feature = feature_named(group)) lacks.features |= only(*feature);
+  }
+  return lacks;
+}
+
+class Hunt {
+ public:
+  Hunt(const HuntOptions& options, const HostOptions& host) : options_(options), host_(host) {
+    const Declarations& port = *host.said;
+    for (const ModuleUnderTest& subject : options.subjects) {
+      targets_.push_back({{subject, options.level, port.fixed_step, lacks_of(port),
+                           port.fraction_bits.has_value()},
+                          {},
+                          {},
+                          0});
+    }
+  }
+
+  Result<HuntRun> run() {
+    do {
+      if (auto done = round(); !done) return tl::unexpected(done.error());
+      options_.on_round(run_.progress);
+    } while (run_.progress.steps < options_.least_steps && !options_.is_over() && !options_.stop());
+    if (auto found = find(); !found) return tl::unexpected(found.error());
+    return std::move(run_);
+  }
+
+ private:
+  template <typename R>
+  Result<std::vector<R>> results_of(const Jobs<R>& jobs) const;
+  Result<void> round();
+  void take(const HuntTrial& trial, const std::vector<std::size_t>& kept_before);
+  void note_failure(std::size_t target, HuntInputs inputs, const VectorResult& result);
+  Result<void> find();
+  Result<HuntFinding> finding_of(const Failure& failure, const ShrunkCase& shrunk);
+  std::optional<Diagnosis> diagnosis_of(const std::vector<std::pair<std::string, VectorResult>>&);
+  void add(HuntFinding finding);
+
+  const HuntOptions& options_;
+  const HostOptions& host_;
+  std::vector<HuntedTarget> targets_;
+  std::uint64_t next_ = 0;  // trial
+  std::vector<Failure> failures_;
+  std::map<std::size_t, std::vector<HuntInputs>> passing_;  // by target
+  HuntRun run_;
+};
+
+template <typename R>
+Result<std::vector<R>> Hunt::results_of(const Jobs<R>& jobs) const {
+  JobOptions<R> workers;
+  workers.processes = options_.processes;
+  workers.in_process = host_.in_process;
+  workers.stop = options_.stop;
+  JobResults<R> outcome = run_jobs(jobs, workers);
+  if (!outcome.errors.empty()) return tl::unexpected(outcome.errors.front());
+  return std::move(outcome.results);
+}
+
+Result<void> Hunt::round() {
+  const std::size_t count =
+      kind_of(host_.port).is_program ? trials_of_part_of_program : trials_of_part;
+  Jobs<HuntTrials> jobs;
+  for (std::size_t part = 0; part < parts_of_round; ++part) {
+    jobs.push_back(
+        std::make_unique<TrialJob>(targets_, options_.seed, next_ + part * count, count, host_));
+  }
+  const auto results = results_of(jobs);
+  if (!results) return tl::unexpected(results.error());
+  next_ += parts_of_round * count;
+  std::vector<std::size_t> kept_before;
+  for (const HuntedTarget& target : targets_) kept_before.push_back(target.kept.size());
+  for (const HuntTrials& trials : *results) {
+    for (const HuntTrial& trial : trials) take(trial, kept_before);
+  }
+  return {};
+}
+
+void Hunt::take(const HuntTrial& trial, const std::vector<std::size_t>& kept_before) {
+  ++run_.progress.trials;
+  run_.progress.steps += trial.steps;
+  run_.progress.met |= trial.meets;
+  const std::size_t index = trial.number % targets_.size();
+  HuntedTarget& hunted = targets_[index];
+  const auto inputs = [&] {
+    return make_trial(hunted.target, options_.seed, trial.number,
+                      std::span(hunted.kept).first(kept_before[index]));
+  };
+  if (trial.failure) {
+    ++run_.progress.failures;
+    return note_failure(index, inputs(), *trial.failure);
+  }
+  auto& passing = passing_[index];
+  if (passing.size() < most_passing_trials && trial.agrees) passing.push_back(inputs());
+  constexpr double larger = 1.3;
+  const bool is_new = (trial.meets & ~hunted.met).any();
+  const bool is_larger = trial.deviation > hunted.deviation * larger && trial.deviation > 1e-3;
+  hunted.met |= trial.meets;
+  hunted.deviation = std::max(hunted.deviation, trial.deviation);
+  run_.progress.deviation = std::max(run_.progress.deviation, trial.deviation);
+  const bool has_room = hunted.kept.size() < std::max<std::size_t>(24, most_kept / targets_.size());
+  if (!(is_new || is_larger) || !has_room) return;
+  HuntInputs kept = inputs();
+  constexpr std::uint32_t most_quiet = 1000;  // its variations would take too long
+  for (HuntTick& tick : kept.ticks) tick.quiet = std::min(tick.quiet, most_quiet);
+  hunted.kept.push_back(std::move(kept));
+}
+
+void Hunt::note_failure(std::size_t target, HuntInputs inputs, const VectorResult& result) {
+  std::size_t same = 0;
+  for (Failure& failure : failures_) {
+    const Module module = targets_[failure.target].target.subject.module;
+    const bool is_same_module = module == targets_[target].target.subject.module;
+    if (!is_same_module || !fail_the_same_way(failure.result, result)) continue;
+    ++failure.same;
+    if (++same == most_same) return;
+  }
+  failures_.push_back({target, std::move(inputs), result});
+}
+
+Result<void> Hunt::find() {
+  Jobs<ShrunkCase> jobs;
+  for (const Failure& failure : failures_) {
+    jobs.push_back(
+        std::make_unique<ShrinkJob>(targets_[failure.target].target, failure.inputs, host_));
+  }
+  const auto shrunk = results_of(jobs);
+  if (!shrunk) return tl::unexpected(shrunk.error());
+  for (std::size_t i = 0; i < shrunk->size(); ++i) {
+    auto finding = finding_of(failures_[i], (*shrunk)[i]);
+    if (!finding) return tl::unexpected(finding.error());
+    add(*std::move(finding));
+  }
+  return {};
+}
+
+// "rate_law_vehicle_torque_setpoint_xyz_0", of the first deviation.
+std::string name_without_fault(const VectorResult& failure) {
+  if (!failure.first) return fmt::format("{}_{}", failure.name, name_of(failure.verdict));
+  const Channel& channel = channels()[failure.first->channel];
+  return fmt::format("{}_{}_{}", name_of(stage_of(*failure.first)), channel.topic(),
+                     channel.field());
+}
+
+std::string identifier(std::string text) {
+  for (char& c : text) {
+    const bool is_kept = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+    if (!is_kept) c = '_';
+  }
+  while (text.ends_with('_')) text.pop_back();
+  return text;
+}
+
+Result<HuntFinding> Hunt::finding_of(const Failure& failure, const ShrunkCase& shrunk) {
+  HuntFinding finding;
+  finding.trials = 1 + failure.same;
+  finding.failure = shrunk.needs_others ? failure.result : shrunk.of_shrunk;
+  finding.needs_others = shrunk.needs_others;
+  finding.name = identifier(name_without_fault(finding.failure));
+  if (shrunk.needs_others) return finding;
+  finding.toml = shrunk.shrunk;
+  std::vector<std::pair<std::string, VectorResult>> vectors = {{shrunk.shrunk, shrunk.of_shrunk},
+                                                               {shrunk.whole, shrunk.of_whole}};
+  for (const HuntInputs& inputs : passing_[failure.target]) {
+    auto text = case_of(inputs, options_.level);
+    if (!text) return tl::unexpected(text.error());
+    VectorResult passed;
+    passed.profile = inputs.subject.profile;
+    passed.rate = inputs.rate;
+    vectors.emplace_back(*std::move(text), passed);
+  }
+  finding.diagnosis = diagnosis_of(vectors);
+  if (finding.diagnosis && !finding.diagnosis->suspects.empty()) {
+    finding.name = identifier(std::string(finding.diagnosis->suspects.front().fault->id));
+  }
+  const auto parsed = parse_case_text(
+      finding.toml,
+      fmt::format("cases/{}/{}/{}.toml", finding.failure.profile, hunt_group, finding.name));
+  if (!parsed) return tl::unexpected(parsed.error());
+  auto trace =
+      reference_outputs(subject_of(*parsed), stimulate(*parsed, finding.failure.rate.motor_unit));
+  if (!trace) return tl::unexpected(trace.error());
+  finding.mixer = parsed->mixer;
+  finding.trace = *std::move(trace);
+  return finding;
+}
+
+// `vectors`: texts of cases with their results.
+std::optional<Diagnosis> Hunt::diagnosis_of(
+    const std::vector<std::pair<std::string, VectorResult>>& vectors) {
+  RunResult run;
+  run.level = options_.level;
+  run.lacks = host_.said->lacks;
+  std::vector<SelectedCase> cases;
+  for (const auto& [text, result] : vectors) {
+    const std::string name = fmt::format("trial_{}", cases.size());
+    const auto parsed =
+        parse_case_text(text, fmt::format("cases/{}/{}/{}.toml", result.profile, hunt_group, name));
+    if (!parsed) continue;
+    cases.push_back({*parsed, {RunConfiguration{result.rate, std::nullopt}}});
+    run.results.push_back(result);
+    run.results.back().group = hunt_group;
+    run.results.back().name = name;
+  }
+  DiagnosisOptions options;
+  options.processes = options_.processes;
+  options.stop = options_.stop;
+  return diagnose_run(run, cases, host_, options);
+}
+
+// Findings of one cause are one finding, with the shortest case.
+void Hunt::add(HuntFinding finding) {
+  const auto same = std::ranges::find(run_.findings, finding.name, &HuntFinding::name);
+  if (same == run_.findings.end()) return run_.findings.push_back(std::move(finding));
+  const auto size = [](const HuntFinding& one) {
+    return std::tuple(one.needs_others, one.trace.samples.size(), one.toml.size());
+  };
+  finding.trials = std::max(finding.trials, same->trials);
+  if (size(finding) < size(*same)) std::swap(finding, *same);
+  same->trials = std::max(finding.trials, same->trials);
+}
+
+}  // namespace
+
+Result<HuntRun> hunt(const HuntOptions& options, const HostOptions& host) {
+  return Hunt(options, host).run();
+}
+
+}  // namespace attest

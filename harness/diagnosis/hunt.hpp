@@ -1,0 +1,60 @@
+// Searches inputs on which a port differs from the reference. A trial is a trace of some hundred
+// ticks, made from the seed and its number. A round is a fixed number of trials. Between rounds the
+// trials that reached something new in the reference are kept, in the order of their numbers, and
+// later trials vary them. So the findings depend on the seed and the rounds, and not on the number
+// of processes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/diagnosis/diagnose.hpp"
+#include "harness/diagnosis/hunt_generator.hpp"
+#include "harness/diagnosis/hunt_trial.hpp"
+#include "harness/host/port_process.hpp"
+
+namespace attest {
+
+// So far, at the end of a round.
+struct HuntProgress {
+  std::size_t trials = 0, steps = 0, failures = 0;
+  HuntFeatures met;      // of all targets
+  double deviation = 0;  // the largest of a trial that did not fail, in units of its tolerance
+};
+
+struct HuntOptions {
+  std::vector<ModuleUnderTest> subjects;  // take turns
+  Level level = Level::numeric;
+  std::uint64_t seed = 1;
+  std::size_t least_steps = 1'000'000;  // the hunt ends after the round that reaches them
+  std::function<bool()> is_over = [] { return false; };  // asked after a round, too
+  int processes = 1;
+  std::function<bool()> stop = [] { return false; };  // true: the result is not needed
+  std::function<void(const HuntProgress&)> on_round = [](const HuntProgress&) {};
+};
+
+// A mistake of the port, and a small case that shows it.
+struct HuntFinding {
+  std::string name;  // of its case: the fault that it resembles, or the stage and the output
+  VectorResult failure;
+  std::optional<Diagnosis> diagnosis;
+  std::string toml;           // the case file
+  std::string mixer;          // its definition; empty: another module
+  Trace trace;                // its inputs, with the outputs of the reference
+  std::size_t trials = 0;     // that failed first in the same output
+  bool needs_others = false;  // fails only after other trials in the same process: has no case
+};
+
+struct HuntRun {
+  HuntProgress progress;
+  std::vector<HuntFinding> findings;  // in the order in which they were found
+};
+
+// Errors: the port cannot be started, the reference fails, a case does not make its inputs.
+Result<HuntRun> hunt(const HuntOptions& options, const HostOptions& host);
+
+}  // namespace attest

@@ -1,0 +1,25 @@
+// Makes the inputs of a trial: from nothing, or from those of an earlier trial that reached
+// something new.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "harness/diagnosis/hunt_inputs.hpp"
+#include "harness/host/declarations.hpp"
+
+namespace attest {
+
+struct HuntTarget {
+  ModuleUnderTest subject;
+  Level level = Level::numeric;
+  std::optional<Rate> fixed_step;  // of the port
+  Lacks lacks;                     // of the port
+  bool is_fixed_point = false;     // the arithmetic of the port
+};
+
+// A function of the arguments alone. `kept`: inputs of earlier trials of this target; may be empty.
+HuntInputs make_trial(const HuntTarget& target, std::uint64_t seed, std::uint64_t trial,
+                      std::span<const HuntInputs> kept);
+
+}  // namespace attest

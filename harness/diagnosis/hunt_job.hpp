@@ -1,0 +1,82 @@
+// The work of a hunt for worker processes: the trials of a part of a round, and the shrinking of a
+// trial that failed.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "harness/diagnosis/hunt_generator.hpp"
+#include "harness/diagnosis/hunt_trial.hpp"
+#include "harness/verify/port_job.hpp"
+
+namespace attest {
+
+// A target, and what its trials have reached.
+struct HuntedTarget {
+  HuntTarget target;
+  std::vector<HuntInputs> kept;
+  HuntFeatures met;
+  double deviation = 0;  // the largest of a trial that did not fail
+};
+
+using HuntTrials = std::vector<HuntTrial>;
+
+template <>
+struct Codec<HuntTrials> {
+  static std::string encode(const Result<HuntTrials>& result);
+  static Result<HuntTrials> decode(const std::string& text);
+};
+
+// HuntTrial::meets has only what HuntedTarget::met has not.
+class TrialJob final : public PortJob<HuntTrials> {
+ public:
+  // The trials from `first` on, of which each target has its turn. REQUIRES: `targets` outlives
+  // this, and does not change while the job runs.
+  TrialJob(std::span<const HuntedTarget> targets, std::uint64_t seed, std::uint64_t first,
+           std::size_t count, HostOptions options)
+      : PortJob(std::move(options)), targets_(targets), seed_(seed), first_(first), count_(count) {}
+
+  std::size_t size() const override { return 1; }
+  Result<HuntTrials> run(std::size_t task) override;
+
+ private:
+  std::span<const HuntedTarget> targets_;
+  std::uint64_t seed_, first_;
+  std::size_t count_;
+};
+
+// A failure as a case, before and after it was shrunk.
+struct ShrunkCase {
+  std::string whole, shrunk;  // texts of case files
+  VectorResult of_whole, of_shrunk;
+  bool needs_others = false;  // the trial does not fail in a process of its own: no cases
+};
+
+template <>
+struct Codec<ShrunkCase> {
+  static std::string encode(const Result<ShrunkCase>& result);
+  static Result<ShrunkCase> decode(const std::string& text);
+};
+
+class ShrinkJob final : public PortJob<ShrunkCase> {
+ public:
+  // REQUIRES: `target` outlives this.
+  ShrinkJob(const HuntTarget& target, HuntInputs inputs, HostOptions options)
+      : PortJob(std::move(options)), target_(target), inputs_(std::move(inputs)) {}
+
+  std::size_t size() const override { return 1; }
+  Result<ShrunkCase> run(std::size_t task) override;
+
+ private:
+  const HuntTarget& target_;
+  HuntInputs inputs_;
+};
+
+// The text of a case with these inputs. Errors: the case does not make them; the reference fails.
+Result<std::string> case_of(const HuntInputs& inputs, Level level);
+
+}  // namespace attest

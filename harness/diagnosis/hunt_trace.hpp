@@ -1,0 +1,59 @@
+// The trace of a trial, with the outputs of the reference, part by part. While it is made, it notes
+// what the reference met: the guidance of a hunt.
+#pragma once
+
+#include <bitset>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "harness/diagnosis/hunt_inputs.hpp"
+#include "harness/golden/margins.hpp"
+#include "harness/host/port_host.hpp"
+#include "harness/trace/trace_parts.hpp"
+
+namespace attest {
+
+// What the reference met in a trial, as numbers: how near it came to each decision, which topics
+// it published in one step, and the signs of its outputs.
+inline constexpr std::size_t feature_limit = 4096;
+using HuntFeatures = std::bitset<feature_limit>;
+
+class HuntTrace final : public TraceParts {
+ public:
+  // Without `meets`, only the outputs are made. REQUIRES: `inputs` outlives this.
+  explicit HuntTrace(const HuntInputs& inputs, HuntFeatures* meets = nullptr);
+
+  const std::string& file() const override { return source_; }
+  const ChannelSet& present() const override { return present_; }
+  // Errors: the reference has no such module, or fails.
+  Result<void> next_part(std::size_t most, Trace& part) override;
+  Result<void> rewind() override;
+
+ private:
+  void add_tick(Trace& part);
+  void note(const Trace& part);
+
+  const HuntInputs& inputs_;
+  HuntFeatures* meets_;
+  std::string source_ = "hunt";
+  ChannelSet present_;
+  std::vector<const Channel*> outputs_;  // floats
+  std::unique_ptr<PortHost> reference_;
+  std::unique_ptr<MarginMeter> meter_;
+  // The next tick: of the inputs, of the quiet ticks after it, of the trace, and its period.
+  std::size_t tick_ = 0, quiet_ = 0, step_ = 0;
+  std::int64_t period_ = 0;
+  std::size_t change_ = 0;
+  Sample held_;
+  bool is_finished_ = false;
+};
+
+// All ticks, with the outputs of the reference.
+Result<Trace> whole_trace_of(const HuntInputs& inputs);
+
+// The index in `inputs.ticks` of a tick of the trace.
+std::size_t tick_of_step(const HuntInputs& inputs, std::size_t step);
+
+}  // namespace attest

@@ -1,0 +1,131 @@
+#include "harness/report/hunt_document.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "harness/core/json_text.hpp"
+#include "harness/report/conclusion.hpp"
+#include "harness/report/failure_text.hpp"
+#include "harness/report/text.hpp"
+#include "harness/verify/verdict_json.hpp"
+
+namespace attest {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string title_of(const HuntReport& report) {
+  return fmt::format("hunt of {} (seed {}, {})", report.run.port, report.seed,
+                     name_of(report.run.level));
+}
+
+std::string sentence_of(const HuntReport& report) {
+  const HuntProgress& progress = report.found.progress;
+  return fmt::format("{} in {} and {}", counted(report.found.findings.size(), "finding"),
+                     counted(progress.trials, "trial"), counted(progress.steps, "step"));
+}
+
+const faults::Fault* fault_of(const HuntFinding& finding) {
+  const bool has_suspect = finding.diagnosis && !finding.diagnosis->suspects.empty();
+  return has_suspect ? finding.diagnosis->suspects.front().fault : nullptr;
+}
+
+std::string resemblance(const HuntFinding& finding) {
+  if (const faults::Fault* fault = fault_of(finding)) {
+    return fmt::format("{}: {}", fault->id, fault->what);
+  }
+  return finding.failure.first ? stages_text(stages_of(*finding.failure.first)) : "";
+}
+
+std::vector<Cell> row_of(const HuntFinding& finding) {
+  const VectorResult& failure = finding.failure;
+  return {Cell(finding.name, failure.verdict),
+          failure.profile,
+          failure.name,
+          failure.rate.to_string(),
+          std::to_string(finding.trace.samples.size()),
+          std::to_string(finding.trials),
+          resemblance(finding)};
+}
+
+void add_lines(const HuntFinding& finding, const HuntReport::Written& written,
+               std::vector<Cell>& lines) {
+  lines.emplace_back(fmt::format("{}: {}", finding.name, failure_headline(finding.failure)));
+  if (finding.needs_others) {
+    lines.emplace_back(
+        "  fails only after other trials in the same process of the port: an "
+        "earlier instance has left state behind");
+    return;
+  }
+  if (!written.case_file.empty()) lines.emplace_back("  case: " + written.case_file);
+  if (!written.command.empty()) lines.emplace_back("  reproduce: " + written.command);
+  if (written.case_file.empty()) {
+    for (const std::string& line : lines_of(finding.toml)) lines.emplace_back("    " + line);
+  }
+}
+
+}  // namespace
+
+Document hunt_document(const HuntReport& report) {
+  const auto& findings = report.found.findings;
+  Document document;
+  document.head = {findings.empty() ? Verdict::pass : Verdict::fail,
+                   findings.empty() ? "pass" : "fail", title_of(report), sentence_of(report)};
+  document.facts = {{"attest", report.run.attest_version}, {"port", report.run.port}};
+  if (findings.empty()) return document;
+  DocumentTable table{"Findings",
+                      {"case", "profile", "module", "rate [Hz]", "ticks", "trials", "resembles"}};
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    table.rows.push_back(row_of(findings[i]));
+    add_lines(findings[i], i < report.written.size() ? report.written[i] : HuntReport::Written(),
+              table.below);
+  }
+  document.tables.push_back(std::move(table));
+  return document;
+}
+
+RunResult run_of(const HuntReport& report) {
+  RunResult run = report.run;
+  for (const HuntFinding& finding : report.found.findings) {
+    run.results.push_back(finding.failure);
+    run.results.back().name = finding.name;
+    if (finding.diagnosis && finding.failure.reason.empty()) {
+      run.results.back().reason = resemblance(finding);
+    }
+  }
+  return run;
+}
+
+std::string hunt_json(const HuntReport& report) {
+  ordered_json findings = ordered_json::array();
+  for (std::size_t i = 0; i < report.found.findings.size(); ++i) {
+    const HuntFinding& finding = report.found.findings[i];
+    const auto written = i < report.written.size() ? report.written[i] : HuntReport::Written();
+    const faults::Fault* const fault = fault_of(finding);
+    VectorResult result = finding.failure;
+    result.name = finding.name;
+    result.elapsed_s = 0;
+    findings.push_back({{"name", finding.name},
+                        {"fault", fault != nullptr ? ordered_json(fault->id) : ordered_json()},
+                        {"trials", finding.trials},
+                        {"result", to_json(result)},
+                        {"case", finding.toml},
+                        {"case_file", written.case_file},
+                        {"trace_file", written.trace_file},
+                        {"command", written.command}});
+  }
+  const HuntProgress& progress = report.found.progress;
+  return document_of({{"schema", "attest-hunt-1"},
+                      {"attest_version", report.run.attest_version},
+                      {"port", report.run.port},
+                      {"level", name_of(report.run.level)},
+                      {"seed", report.seed},
+                      {"trials", progress.trials},
+                      {"steps", progress.steps},
+                      {"findings", findings}});
+}
+
+}  // namespace attest

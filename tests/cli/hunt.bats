@@ -1,0 +1,88 @@
+load common
+
+@test "the reference and a right port are not accused" {
+  run "$ATTEST" hunt --steps 100000 --json found.json
+  [ "$status" -eq 0 ]
+  has "PASS 0 findings"
+  grep -q '"findings": \[\]' found.json
+  run "$ATTEST" hunt --steps 100000 --level exact
+  [ "$status" -eq 0 ]
+  for port in right_quaternion right_cascade_fixed_22 right_pure_laws_16; do
+    run "$ATTEST" hunt --steps 100000 --port "lib:$PORTS/$port.so"
+    [ "$status" -eq 0 ]
+  done
+}
+
+@test "a mistake is found, shrunk and named, and its case fails" {
+  run "$ATTEST" hunt --module rate_unit --profile v1.16.0 --steps 100000 --out ours \
+    --port fault:cascade-d-reversed --json found.json --junit found.xml --html found.html
+  [ "$status" -eq 1 ]
+  has "FAIL 1 finding "
+  has "cascade-d-reversed: adds D instead of subtracting it"
+  grep -q '"fault": "cascade-d-reversed"' found.json
+  grep -q '<testcase .*cascade_d_reversed' found.xml
+  grep -q 'cascade_d_reversed' found.html
+  made=ours/cases/px4-v1.16.0/hunt/cascade_d_reversed.toml
+  has "case: $made"
+  [ "$(wc -l <$made)" -lt 40 ]
+  grep -q 'Fill in' $made
+  reproduce=$(sed -n "s,.*reproduce: attest,,p" <<<"$output")
+  run eval "\"$ATTEST\" $reproduce"
+  [ "$status" -eq 1 ]
+}
+
+@test "a finding runs as a trace and as a case" {
+  "$ATTEST" hunt --module attitude_unit --steps 100000 --out ours --profile v1.15.4 \
+    --port fault:cascade-m-not-canonical >found.txt || [ $? -eq 1 ]
+  trace=(ours/traces/px4-v1.15.4/hunt/*.csv)
+  run "$ATTEST" replay "${trace[0]}" --profile v1.15.4 --port fault:cascade-m-not-canonical
+  [ "$status" -eq 1 ]
+  run "$ATTEST" replay "${trace[0]}" --profile v1.15.4
+  [ "$status" -eq 0 ]
+  "$ATTEST" --suite ours bless --group hunt --yes --reason "found by hunt" >/dev/null
+  run "$ATTEST" --suite ours run --group hunt --port fault:cascade-m-not-canonical --no-diagnose
+  [ "$status" -eq 1 ]
+  run "$ATTEST" --suite ours run --group hunt
+  [ "$status" -eq 0 ]
+}
+
+@test "the same seed gives the same findings for any number of jobs" {
+  hunt() {
+    "$ATTEST" hunt --port fault:cascade-m-not-canonical+cascade-d-reversed --profile v1.16.0 \
+      --steps 100000 "$@" || [ $? -eq 1 ]
+  }
+  for seed in 1 2; do
+    hunt --seed $seed --jobs 1 --json one.$seed >text.one 2>/dev/null
+    hunt --seed $seed --jobs 2 --json two.$seed >text.two 2>/dev/null
+    cmp one.$seed two.$seed
+    cmp text.one text.two
+  done
+  ! cmp -s one.1 one.2
+}
+
+@test "a case of a hunt overwrites no file, and is in no released suite" {
+  for _ in 1 2; do
+    run "$ATTEST" hunt --module rate_law --steps 1000 --out ours --port fault:cascade-d-reversed
+    [ "$status" -eq 1 ]
+  done
+  [ "$(find ours -name 'cascade_d_reversed*.toml' | wc -l)" -eq 2 ]
+  run "$ATTEST" hunt --steps 1000 --out "$SOURCE"
+  [ "$status" -eq 2 ]
+}
+
+@test "a port that crashes is a finding, and wrong options are errors" {
+  run "$ATTEST" hunt --steps 1000 --port "lib:$PORTS/port_crash.so"
+  [ "$status" -eq 1 ]
+  has "crash"
+  run "$ATTEST" hunt --module rate_unti
+  [ "$status" -eq 2 ]
+  has 'did you mean `rate_unit`?'
+  run "$ATTEST" hunt --profile v1.13
+  [ "$status" -eq 2 ]
+  run "$ATTEST" hunt --level events
+  [ "$status" -eq 2 ]
+  run "$ATTEST" hunt --module mixer --port "lib:$STARTER"
+  [ "$status" -eq 2 ]
+  run "$ATTEST" hunt --seconds 1 --module rate_law
+  [ "$status" -eq 0 ]
+}
