@@ -185,6 +185,12 @@ Result<HuntPlan> make_hunt_plan(const HuntCommandOptions& options) {
   auto port =
       prepare_port(plan.host, options.profiles.empty() ? known_profile_names() : options.profiles);
   if (!port) return tl::unexpected(port.error());
+  if (port->fraction_bits) {
+    return fail(
+        "a port in fixed point cannot be hunted: its errors add up, and in random inputs a hunt "
+        "cannot tell them from mistakes; `attest run` judges it by cases that are known to be "
+        "fair");
+  }
   auto subjects = subjects_of(options, *port);
   if (!subjects) return tl::unexpected(subjects.error());
   plan.hunt.subjects = *std::move(subjects);

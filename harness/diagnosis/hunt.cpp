@@ -53,11 +53,7 @@ class Hunt {
   Hunt(const HuntOptions& options, const HostOptions& host) : options_(options), host_(host) {
     const Declarations& port = *host.said;
     for (const ModuleUnderTest& subject : options.subjects) {
-      targets_.push_back({{subject, options.level, port.fixed_step, lacks_of(port),
-                           port.fraction_bits.has_value()},
-                          {},
-                          {},
-                          0});
+      targets_.push_back({{subject, options.level, port.fixed_step, lacks_of(port)}, {}, {}, 0});
     }
   }
 

@@ -117,22 +117,6 @@ void limit_step(const HuntTarget& target, HuntInputs& inputs) {
   }
 }
 
-// The law multiplies by the weight of yaw and later divides by it, which in fixed point costs the
-// last bits of a small weight.
-void limit_yaw_weight(const HuntTarget& target, HuntInputs& inputs) {
-  if (!target.is_fixed_point) return;
-  constexpr float least = 0.1F;
-  for (ParameterChange& change : inputs.parameters) {
-    const bool is_small = change.value != 0 && change.value < least;
-    if (change.name == "MC_YAW_WEIGHT" && is_small) change.value = least;
-  }
-  const auto weight = find_channel(target.subject.module, "in/attitude_gains.yaw_weight");
-  for (HuntTick& tick : inputs.ticks) {
-    const double value = weight ? value_of(channels()[*weight], tick.sample) : 0;
-    if (value != 0 && value < least) set_value(channels()[*weight], tick.sample, least);
-  }
-}
-
 HuntInputs fresh_trial(const HuntTarget& target, HuntRandom& random) {
   HuntInputs inputs;
   inputs.subject = target.subject;
@@ -151,7 +135,7 @@ HuntInputs fresh_trial(const HuntTarget& target, HuntRandom& random) {
   }
   choose_gaps(target, inputs, random);
   choose_parameters(target, inputs, random);
-  const double extremes = target.level == Level::exact ? 0.4 : target.is_fixed_point ? 0 : 0.06;
+  const double extremes = target.level == Level::exact ? 0.4 : 0.06;
   if (random.chance(extremes)) add_extremes(target, inputs, random);
   return inputs;
 }
@@ -231,7 +215,6 @@ HuntInputs make_trial(const HuntTarget& target, std::uint64_t seed, std::uint64_
     }
   }
   limit_step(target, inputs);
-  limit_yaw_weight(target, inputs);
   make_orderly(target.lacks, inputs);
   return inputs;
 }

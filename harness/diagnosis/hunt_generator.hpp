@@ -15,7 +15,6 @@ struct HuntTarget {
   Level level = Level::numeric;
   std::optional<Rate> fixed_step;  // of the port
   Lacks lacks;                     // of the port
-  bool is_fixed_point = false;     // the arithmetic of the port
 };
 
 // A function of the arguments alone. `kept`: inputs of earlier trials of this target; may be empty.

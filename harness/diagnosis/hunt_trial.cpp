@@ -22,8 +22,6 @@ namespace {
 constexpr double sure_part = 0.2;
 // Of float inputs: 8 ulp. Quaternions of another form of the law differ by as much (tolerance.hpp).
 constexpr double relative_noise = 0x1p-20;
-// In fixed point: LSB. Each step of the law rounds, and the first ones count the most.
-constexpr double noise_lsb = 16;
 
 // The trace up to the tick, with outputs of the reference.
 Result<Trace> begin_of(const HuntInputs& inputs, std::size_t last_step) {
@@ -38,15 +36,13 @@ Result<Trace> begin_of(const HuntInputs& inputs, std::size_t last_step) {
 // Trials of errors; those with an even number have errors of one sign in each input.
 constexpr std::uint64_t noise_trials = 4;
 
-// The value with an error in its last bits: of a float or, in fixed point, of its grid.
-double disturbed(const Channel& channel, double value, std::optional<int> fraction_bits,
-                 double sign) {
-  if (fraction_bits) return value + sign * std::ldexp(noise_lsb, -*fraction_bits);
+// The value with an error in its last bits.
+double disturbed(const Channel& channel, double value, double sign) {
   const bool is_rotation = channel.quantity == Quantity::quaternion;
   return value + sign * relative_noise * (is_rotation ? 1 : std::abs(value));
 }
 
-Trace disturbed(const Trace& right, std::optional<int> fraction_bits, std::uint64_t number) {
+Trace disturbed(const Trace& right, std::uint64_t number) {
   Trace inputs = right;
   HuntRandom random(1, number);
   for (std::size_t i = 0; i < channels().size(); ++i) {
@@ -59,7 +55,7 @@ Trace disturbed(const Trace& right, std::optional<int> fraction_bits, std::uint6
       // A zero is zero in every port, but an attitude of another form has no zeros.
       const bool is_exact = value == 0 && channel.quantity != Quantity::quaternion;
       if (!is_exact && std::isfinite(value)) {
-        set_value(channel, sample, disturbed(channel, value, fraction_bits, sign));
+        set_value(channel, sample, disturbed(channel, value, sign));
       }
     }
   }
@@ -67,33 +63,18 @@ Trace disturbed(const Trace& right, std::optional<int> fraction_bits, std::uint6
 }
 
 // Whether `answered` differs from the right outputs by more than the sure part of the tolerances.
-bool differs(const Trace& answered, const Trace& right, std::optional<int> fraction_bits) {
-  Tolerances tolerances(Level::numeric);
-  if (fraction_bits) tolerances.allow_lsb(*fraction_bits, right.samples.size());
-  return !compare(answered, right, tolerances.scaled(sure_part)).agrees();
+bool differs(const Trace& answered, const Trace& right) {
+  return !compare(answered, right, Tolerances(Level::numeric).scaled(sure_part)).agrees();
 }
 
-bool is_by_precision(const HuntInputs& inputs, const Trace& right,
-                     std::optional<int> fraction_bits) {
+bool is_by_precision(const HuntInputs& inputs, const Trace& right) {
   Trace in_double = right;
   const auto host = open_reference({}, Precision::binary64);
   if (host->drive(inputs.subject, in_double)) return true;
-  if (differs(in_double, right, fraction_bits)) return true;
+  if (differs(in_double, right)) return true;
   for (std::uint64_t number = 0; number < noise_trials; ++number) {
-    const auto answered =
-        reference_outputs(inputs.subject, disturbed(right, fraction_bits, number));
-    if (!answered || differs(*answered, right, fraction_bits)) return true;
-  }
-  return false;
-}
-
-// Numbers in fixed point are finite.
-bool has_non_finite(const Trace& right) {
-  for (std::size_t i = 0; i < channels().size(); ++i) {
-    const Channel& channel = channels()[i];
-    if (!right.present[i] || !channel.is_output()) continue;
-    const auto is_not = [&](const Sample& one) { return !std::isfinite(value_of(channel, one)); };
-    if (std::ranges::any_of(right.samples, is_not)) return true;
+    const auto answered = reference_outputs(inputs.subject, disturbed(right, number));
+    if (!answered || differs(*answered, right)) return true;
   }
   return false;
 }
@@ -114,17 +95,15 @@ bool recovers_without_setpoint(const Trace& right) {
 }
 
 // Whether rounding can explain the deviation.
-bool is_excused(const HuntInputs& inputs, const VectorResult& failed,
-                std::optional<int> fraction_bits) {
+bool is_excused(const HuntInputs& inputs, const VectorResult& failed) {
   if (!failed.first) return false;
   const std::size_t last_step = failed.first->tick;
   const auto right = begin_of(inputs, last_step);
   if (!right) return true;
-  if (fraction_bits && has_non_finite(*right)) return true;
   if (recovers_without_setpoint(*right)) return true;
   if (failed.verdict == Verdict::non_finite) return false;
-  return first_near_decision(inputs.subject, *right, fraction_bits, last_step) ||
-         is_by_precision(inputs, *right, fraction_bits);
+  return first_near_decision(inputs.subject, *right, {}, last_step) ||
+         is_by_precision(inputs, *right);
 }
 
 double deviation_of(const VectorResult& result) {
@@ -184,7 +163,7 @@ Result<HuntTrial> judge_trial(const HuntInputs& inputs, const Lacks& lacks, Port
   trial.deviation = level == Level::exact ? 0 : deviation_of(*result);
   trial.agrees = result->verdict == Verdict::pass;
   if (!fails_a_run(result->verdict)) return trial;
-  if (level != Level::exact && is_excused(inputs, *result, host.declarations().fraction_bits)) {
+  if (level != Level::exact && is_excused(inputs, *result)) {
     trial.deviation = 0;
     return trial;
   }

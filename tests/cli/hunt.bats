@@ -7,7 +7,7 @@ load common
   grep -q '"findings": \[\]' found.json
   run "$ATTEST" hunt --steps 100000 --level exact
   [ "$status" -eq 0 ]
-  for port in right_quaternion right_cascade_fixed_22 right_pure_laws_16; do
+  for port in right_quaternion right_cascade_quaternion; do
     run "$ATTEST" hunt --steps 100000 --port "lib:$PORTS/$port.so"
     [ "$status" -eq 0 ]
   done
@@ -83,6 +83,9 @@ load common
   [ "$status" -eq 2 ]
   run "$ATTEST" hunt --module mixer --port "lib:$STARTER"
   [ "$status" -eq 2 ]
+  run "$ATTEST" hunt --steps 1000 --port "lib:$PORTS/right_cascade_fixed_22.so"
+  [ "$status" -eq 2 ]
+  has "a port in fixed point cannot be hunted"
   run "$ATTEST" hunt --seconds 1 --module rate_law
   [ "$status" -eq 0 ]
 }
