@@ -4,7 +4,8 @@
 #
 #     attest::unit     the ABI headers, for the port to link (C or C++)
 #     attest::math     the elementary functions of attest_math.h, for the port to link
-#     attest::attest   the binary, for add_test(COMMAND attest::attest run --port lib:...)
+#     attest::attest   the binary
+#     attest_add_tests(TARGET port)   a test of CTest for each group of the suite
 include(CMakePackageConfigHelpers)
 
 set(ATTEST_INSTALL_CMAKEDIR ${CMAKE_INSTALL_LIBDIR}/cmake/attest)
