@@ -34,7 +34,46 @@ install(FILES ci/examples/github-action.yml ci/examples/github-actions.yml
 # Programs that read the JSON reports validate them with these schemas.
 install(FILES harness/report/report.schema.json harness/report/stress.schema.json
         DESTINATION ${ATTEST_INSTALL_DATADIR}/schemas)
-install(FILES LICENSE harness/port/PROTOCOL.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# The documents and what they link to, except sources of attest, in the folders of the source tree.
+set(documents
+    ARCHITECTURE.md
+    CHANGELOG.md
+    LICENSE
+    README.md
+    benchmarks/RESULTS.md
+    cases/README.md
+    ci/examples/Dockerfile
+    ci/examples/github-action.yml
+    ci/examples/github-actions.yml
+    ci/examples/gitlab-ci.yml
+    controller/attest_actuation.h
+    controller/attest_cascade.h
+    controller/attest_law.h
+    controller/attest_math.h
+    controller/attest_unit.h
+    controller/starters/c_program/README.md
+    controller/starters/simulink/README.md
+    docs/flights.md
+    docs/levels.md
+    docs/own_law.md
+    docs/ports.md
+    docs/reports.md
+    docs/sweeps.md
+    docs/timing.md
+    docs/traces.md
+    docs/verdicts.md
+    golden/README.md
+    harness/casefile/SCHEMA.md
+    harness/port/PROTOCOL.md
+    harness/report/report.schema.json
+    harness/report/stress.schema.json
+    models/README.md
+    tests/QUALITY.md)
+foreach(document IN LISTS documents)
+  get_filename_component(folder ${document} DIRECTORY)
+  install(FILES ${document} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})
+endforeach()
 
 # harness/cli makes the manual pages and the completions.
 set(help ${PROJECT_BINARY_DIR}/help)

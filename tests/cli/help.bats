@@ -87,6 +87,16 @@ commands=(run hunt replay sim stress sweep sweep-rate schedule time compare plot
   [ -z "$(groff -man -ww -Tutf8 pages/*.1 2>&1 >/dev/null)" ]
 }
 
+@test "attest(1) has each environment variable that attest reads" {
+  "$ATTEST" help --man pages
+  read=$(grep -roh 'getenv("[A-Z_]*"' "$SOURCE/harness" | sort -u | cut -d'"' -f2)
+  [ "$(wc -w <<<"$read")" -ge 6 ]
+  # The C++ library reads this one, for the folder of temporary files.
+  documented=$(sed -n '/^\.SH ENVIRONMENT/,/^\.SH SEE/p' pages/attest.1 | grep -oE 'fB[A-Z_]+' |
+    cut -c3-)
+  [ "$(sort -u <<<"$documented")" = "$(printf '%s\n' $read TMPDIR | sort -u)" ]
+}
+
 # completed WORDS...: what the last of these words of a command line can become.
 completed() {
   COMP_WORDS=("$@") COMP_CWORD=$(($# - 1))
