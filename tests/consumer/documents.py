@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""The installed documents: `documents.py INSTALLED SOURCE`. Each document in docs/ is there, and each
-link leads to a file or folder that is there, or to one of attest's own sources. Exits 1 if not."""
+"""The installed documents: `documents.py INSTALLED SOURCE`. Each document in docs/ is there, and
+each link leads to a file or folder that is there, or to one of attest's own sources. Exits 1 if
+not."""
 
 import pathlib
 import re
