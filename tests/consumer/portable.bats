@@ -1,5 +1,6 @@
-# The portable package, made from the installed attest. `ci/package --portable` also tries it in bare
-# systems. Set by CTest: INSTALLED (the installed attest), SOURCE (the tree), STARTER (the C starter).
+# The portable package, made from the installed attest. `ci/package --portable` also tries it in
+# bare systems. Set by CTest: INSTALLED (the installed attest), SOURCE (the tree), STARTER (the C
+# starter).
 
 setup_file() {
   command -v patchelf >/dev/null || skip "patchelf is not installed"
