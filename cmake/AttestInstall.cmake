@@ -29,8 +29,9 @@ install(FILES controller/attest_unit.h controller/attest_actuation.h controller/
               controller/attest_law.h controller/attest_math.h
         DESTINATION ${ATTEST_INSTALL_DATADIR}/include)
 install(FILES ci/examples/github-action.yml ci/examples/github-actions.yml
-              ci/examples/gitlab-ci.yml
+              ci/examples/github-shards.yml ci/examples/gitlab-ci.yml ci/examples/gitlab-shards.yml
         DESTINATION ${ATTEST_INSTALL_DATADIR}/ci)
+install(PROGRAMS ci/examples/install-attest DESTINATION ${ATTEST_INSTALL_DATADIR}/ci)
 # Programs that read the JSON reports validate them with these schemas.
 install(FILES harness/report/report.schema.json harness/report/stress.schema.json
         DESTINATION ${ATTEST_INSTALL_DATADIR}/schemas)
@@ -46,7 +47,10 @@ set(documents
     ci/examples/Dockerfile
     ci/examples/github-action.yml
     ci/examples/github-actions.yml
+    ci/examples/github-shards.yml
     ci/examples/gitlab-ci.yml
+    ci/examples/gitlab-shards.yml
+    ci/examples/install-attest
     controller/attest_actuation.h
     controller/attest_cascade.h
     controller/attest_law.h
