@@ -35,7 +35,7 @@ installed() {
   export ATTEST_PACKAGE_URL="https://example.org/a/attest_0.2.0_amd64.deb?token=1"
   installed
   [ "$status" -eq 0 ]
-  grep -q "^curl .*/attest_0.2.0_amd64.deb https://example.org/a/attest_0.2.0_amd64.deb?token=1" called
+  grep -q "^curl .*/attest_0.2.0_amd64.deb $ATTEST_PACKAGE_URL$" called
   grep -q "^apt-get install .*/attest_0.2.0_amd64.deb$" called
   OFFLINE=yes installed
   [ "$status" -eq 2 ]
