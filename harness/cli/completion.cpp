@@ -13,8 +13,7 @@ namespace attest::cli {
 namespace {
 
 // Types of options whose values are the words in backquotes in their help.
-constexpr std::array fixed_types{"FORMAT", "KIND",  "LANG",  "LEVEL",
-                                 "MODULE", "PLANT", "POLICY"};
+constexpr std::array fixed_types{"FORMAT", "KIND", "LANG", "LEVEL", "MODULE", "PLANT", "POLICY"};
 
 // Types of options whose values the function _attest_values of the script prints.
 constexpr std::array listed_types{"CASE", "GLOB", "GROUP",   "HZ",     "HZ,...",
