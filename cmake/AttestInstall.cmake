@@ -4,7 +4,8 @@
 #
 #     attest::unit     the ABI headers, for the port to link (C or C++)
 #     attest::math     the elementary functions of attest_math.h, for the port to link
-#     attest::attest   the binary, for add_test(COMMAND attest::attest run --port lib:...)
+#     attest::attest   the binary
+#     attest_add_tests(TARGET port)   a test of CTest for each group of the suite
 include(CMakePackageConfigHelpers)
 
 set(ATTEST_INSTALL_CMAKEDIR ${CMAKE_INSTALL_LIBDIR}/cmake/attest)
@@ -28,12 +29,55 @@ install(FILES controller/attest_unit.h controller/attest_actuation.h controller/
               controller/attest_law.h controller/attest_math.h
         DESTINATION ${ATTEST_INSTALL_DATADIR}/include)
 install(FILES ci/examples/github-action.yml ci/examples/github-actions.yml
-              ci/examples/gitlab-ci.yml
+              ci/examples/github-shards.yml ci/examples/gitlab-ci.yml ci/examples/gitlab-shards.yml
         DESTINATION ${ATTEST_INSTALL_DATADIR}/ci)
+install(PROGRAMS ci/examples/install-attest DESTINATION ${ATTEST_INSTALL_DATADIR}/ci)
 # Programs that read the JSON reports validate them with these schemas.
 install(FILES harness/report/report.schema.json harness/report/stress.schema.json
         DESTINATION ${ATTEST_INSTALL_DATADIR}/schemas)
-install(FILES LICENSE harness/port/PROTOCOL.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# The documents and what they link to, except sources of attest, in the folders of the source tree.
+set(documents
+    ARCHITECTURE.md
+    CHANGELOG.md
+    LICENSE
+    README.md
+    benchmarks/RESULTS.md
+    cases/README.md
+    ci/examples/Dockerfile
+    ci/examples/github-action.yml
+    ci/examples/github-actions.yml
+    ci/examples/github-shards.yml
+    ci/examples/gitlab-ci.yml
+    ci/examples/gitlab-shards.yml
+    ci/examples/install-attest
+    controller/attest_actuation.h
+    controller/attest_cascade.h
+    controller/attest_law.h
+    controller/attest_math.h
+    controller/attest_unit.h
+    controller/starters/c_program/README.md
+    controller/starters/simulink/README.md
+    docs/flights.md
+    docs/levels.md
+    docs/own_law.md
+    docs/ports.md
+    docs/reports.md
+    docs/sweeps.md
+    docs/timing.md
+    docs/traces.md
+    docs/verdicts.md
+    golden/README.md
+    harness/casefile/SCHEMA.md
+    harness/port/PROTOCOL.md
+    harness/report/report.schema.json
+    harness/report/stress.schema.json
+    models/README.md
+    tests/QUALITY.md)
+foreach(document IN LISTS documents)
+  get_filename_component(folder ${document} DIRECTORY)
+  install(FILES ${document} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})
+endforeach()
 
 # harness/cli makes the manual pages and the completions.
 set(help ${PROJECT_BINARY_DIR}/help)

@@ -109,6 +109,25 @@ constexpr const char* exit_status =
     ".TP\n2\nWrong usage or environment: a file, the port, a golden; or no result.\n"
     ".TP\n130\nInterrupted by Ctrl\\-C.\n";
 
+// All variables that attest reads; tests/cli/help.bats compares them with the calls of getenv().
+constexpr const char* environment =
+    ".SH ENVIRONMENT\n"
+    ".TP\n\\fBATTEST_SUITE\\fR\n"
+    "Folder with cases/, golden/ and models/, if \\fB\\-\\-suite\\fR is not given.\n"
+    ".TP\n\\fBGITHUB_STEP_SUMMARY\\fR\n"
+    "File to which \\fB\\-\\-github\\fR adds the job summary. GitHub Actions sets it.\n"
+    ".TP\n\\fBHOME\\fR, \\fBXDG_STATE_HOME\\fR\n"
+    "The last report with failures, for \\fB\\-\\-last\\-failed\\fR, is in $XDG_STATE_HOME/attest, "
+    "by "
+    "default in ~/.local/state/attest.\n"
+    ".TP\n\\fBNO_COLOR\\fR\nIf it is not empty, a terminal shows no colours.\n"
+    ".TP\n\\fBPATH\\fR\nFolders of the programs that attest starts, such as valgrind.\n"
+    ".TP\n\\fBSOURCE_DATE_EPOCH\\fR\n"
+    "The date of reports in seconds since 1970, so that equal runs have equal reports.\n"
+    ".TP\n\\fBTERM\\fR\nIf it is unset or \\fBdumb\\fR, a terminal shows no colours and no "
+    "progress.\n"
+    ".TP\n\\fBTMPDIR\\fR\nFolder for temporary files, in place of /tmp.\n";
+
 std::string see_also(const std::vector<std::string>& pages) {
   std::vector<std::string> shown;
   for (const std::string& page : pages) shown.push_back(fmt::format("\\fB{}\\fR(1)", roff(page)));
@@ -156,7 +175,8 @@ std::string man_page(const CLI::App& app) {
                         roff(trimmed(command->get_description())));
     pages.push_back(page_name(*command));
   }
-  return text + options_text(app) + examples_text(app) + exit_status + see_also(pages);
+  return text + options_text(app) + examples_text(app) + exit_status + environment +
+         see_also(pages);
 }
 
 Result<void> write_man_pages(const CLI::App& app, const std::filesystem::path& folder) {

@@ -104,6 +104,7 @@ void lay_out(const Parts& parts, const Language& language, const fs::path& folde
   fs::copy_file(parts.ci / "github-actions.yml", github / "workflows" / "attest.yml");
   fs::copy_file(parts.ci / "github-action.yml", github / "actions" / "attest" / "action.yml");
   fs::copy_file(parts.ci / "gitlab-ci.yml", folder / ".gitlab-ci.yml");
+  fs::copy_file(parts.ci / "install-attest", folder / "install-attest");
 }
 
 // For who does not name one.
@@ -144,7 +145,8 @@ int new_port_command(const NewPortOptions& options, const Globals& globals) {
       "{0} has a complete port in {1}. Replace its law by yours; README.md says where.\n"
       "  {0}/check                   builds it and runs the whole suite\n"
       "  {0}/check --group {2}  builds it and runs one group: all options of `attest run`\n"
-      "  .github/ and .gitlab-ci.yml there run check in CI; set ATTEST_PACKAGE_URL\n",
+      "  .github/ and .gitlab-ci.yml there run check in CI, with a package of attest that you "
+      "add\n",
       options.folder, language->title, language->group);
   return exit_ok;
 }

@@ -32,6 +32,7 @@ ATTEST_EMBED(parallel_jobs, ATTEST_PARALLEL_JOBS);
 ATTEST_EMBED(github_workflow, ATTEST_GITHUB_WORKFLOW);
 ATTEST_EMBED(github_set_up, ATTEST_GITHUB_SET_UP);
 ATTEST_EMBED(gitlab_pipeline, ATTEST_GITLAB_PIPELINE);
+ATTEST_EMBED(install_script, ATTEST_INSTALL_SCRIPT);
 
 namespace attest::cli {
 namespace {
@@ -71,6 +72,7 @@ std::string github_word(std::string_view text) {
 std::vector<Kind> kinds() {
   const PlannedFile shard{"shard", ATTEST_EMBEDDED(shard_script), true};
   const PlannedFile merge{"merge", ATTEST_EMBEDDED(merge_script), true};
+  const PlannedFile install{"install-attest", ATTEST_EMBEDDED(install_script), true};
   return {
       {"slurm",
        shell_word,
@@ -93,16 +95,16 @@ std::vector<Kind> kinds() {
        "{0}/run flies them with GNU parallel, then merges them to {0}/results"},
       {"github",
        github_word,
-       {{"sweep.yml", ATTEST_EMBEDDED(github_workflow), false}},
+       {{"sweep.yml", ATTEST_EMBEDDED(github_workflow), false}, install},
        false,
        256,  // docs.github.com, "Usage limits": jobs of a matrix
-       "put {0}/sweep.yml into .github/workflows"},
+       "put {0}/sweep.yml into .github/workflows, and {0}/install-attest into the top folder"},
       {"gitlab",
        shell_word,
-       {{"sweep.yml", ATTEST_EMBEDDED(gitlab_pipeline), false}},
+       {{"sweep.yml", ATTEST_EMBEDDED(gitlab_pipeline), false}, install},
        false,
        200,  // docs.gitlab.com, "CI/CD YAML syntax reference": parallel
-       "include {0}/sweep.yml in .gitlab-ci.yml"},
+       "include {0}/sweep.yml in .gitlab-ci.yml, and put {0}/install-attest into the top folder"},
   };
 }
 

@@ -10,6 +10,7 @@
 #include "harness/report/conclusion.hpp"
 #include "harness/report/document.hpp"
 #include "harness/report/failure_text.hpp"
+#include "harness/report/matrix.hpp"
 #include "harness/report/terminal.hpp"
 #include "harness/report/text.hpp"
 
@@ -54,6 +55,33 @@ std::string fence_of(const std::string& text) {
   return std::string(longest + 1, '`');
 }
 
+// A text in a cell of a table in Markdown. A name in it comes from a case file.
+std::string cell_text(const std::string& text) {
+  std::string out;
+  for (const char c : one_line(text)) {
+    if (std::string_view("|`<*\\[").find(c) != std::string_view::npos) out += '\\';
+    out += c;
+  }
+  return out;
+}
+
+// The cells with a failure have a mark.
+std::string markdown(const DocumentTable& table) {
+  std::string out = cell_text(table.caption) + "\n\n|", line = "|---|";
+  for (const std::string& name : table.header) out += fmt::format(" {} |", cell_text(name));
+  for (std::size_t i = 1; i < table.header.size(); ++i) line += "---:|";
+  out += "\n" + line + "\n";
+  for (const std::vector<Cell>& row : table.rows) {
+    out += "|";
+    for (const Cell& cell : row) {
+      const bool has_failed = cell.verdict && fails_a_run(*cell.verdict);
+      out += fmt::format(" {}{} |", has_failed ? "\u274c " : "", cell_text(cell.text));
+    }
+    out += "\n";
+  }
+  return out + "\n";
+}
+
 }  // namespace
 
 std::string github_annotations(const RunResult& run) {
@@ -87,8 +115,11 @@ std::string github_summary(const RunResult& run, double wall_s,
                            const std::optional<Diagnosis>& diagnosis) {
   const std::string text = render_summary(run, wall_s, {}, diagnosis);
   const std::string fence = fence_of(text);
-  return fmt::format("### attest: {}\n\n{}text\n{}{}\n\n", outcome_of(conclusion_of(run)), fence,
-                     text, fence);
+  std::string out = fmt::format("### attest: {}\n\n", outcome_of(conclusion_of(run)));
+  for (const DocumentTable& table : matrices_of(run)) out += markdown(table);
+  return out +
+         fmt::format("<details><summary>the report</summary>\n\n{}text\n{}{}\n\n</details>\n\n",
+                     fence, text, fence);
 }
 
 }  // namespace attest

@@ -23,7 +23,8 @@ std::string github_annotations(const RunResult& run);
 // line of the text can be the closing one.
 std::string without_commands(const std::string& text);
 
-// The job summary, in Markdown: a heading and render_summary() as preformatted text.
+// The job summary, in Markdown: a heading, tables of groups and rates, and render_summary() as
+// preformatted text, folded.
 std::string github_summary(const RunResult& run, double wall_s,
                            const std::optional<Diagnosis>& diagnosis);
 

@@ -87,6 +87,16 @@ commands=(run hunt replay sim stress sweep sweep-rate schedule time compare plot
   [ -z "$(groff -man -ww -Tutf8 pages/*.1 2>&1 >/dev/null)" ]
 }
 
+@test "attest(1) has each environment variable that attest reads" {
+  "$ATTEST" help --man pages
+  read=$(grep -roh 'getenv("[A-Z_]*"' "$SOURCE/harness" | sort -u | cut -d'"' -f2)
+  [ "$(wc -w <<<"$read")" -ge 6 ]
+  # The C++ library reads this one, for the folder of temporary files.
+  documented=$(sed -n '/^\.SH ENVIRONMENT/,/^\.SH SEE/p' pages/attest.1 | grep -oE 'fB[A-Z_]+' |
+    cut -c3-)
+  [ "$(sort -u <<<"$documented")" = "$(printf '%s\n' $read TMPDIR | sort -u)" ]
+}
+
 # completed WORDS...: what the last of these words of a command line can become.
 completed() {
   COMP_WORDS=("$@") COMP_CWORD=$(($# - 1))
@@ -112,8 +122,39 @@ completed() {
   [ "$output" = "heavy_quad hexa hummingbird" ]
   completed attest run --json ""
   [ -z "$output" ]
+  completed attest help sm
+  [ "$output" = smoke ]
+  completed attest run --filter roll_p
+  [ -n "$output" ]
+  completed attest faults quat-order-s
+  [ "$output" = "quat-order-setpoint quat-order-state" ]
   run "$ATTEST" help --completion fish
   [ "$status" -eq 2 ]
+}
+
+# Bash gives the function the words that it has split at colons, and replaces only the last of them.
+@test "bash completes the kinds of port, and what follows their colon" {
+  source <("$ATTEST" help --completion bash)
+  COMP_WORDBREAKS=$' \t\n"\'@><=;|&(:'
+  mkdir -p "my ports/old"
+  touch "my ports/"{mine.so,notes.txt,program}
+  chmod +x "my ports/program"
+  completed attest smoke --port ""
+  [ "$output" = "builtin fault: lib: proc: recorded:" ]
+  completed attest run li
+  [ "$output" = "lib:" ]
+  completed attest run --port fault : tpa-m
+  [ "$output" = tpa-missing ]
+  completed attest run --port lib :
+  [ "$output" = 'my ports/' ]
+  completed attest run --port lib : 'my\ ports/'
+  [ "$output" = 'my ports/mine.so my ports/old/' ]
+  completed attest run --port proc : 'my\ ports/p'
+  [ "$output" = 'my ports/program' ]
+  completed attest run --port recorded : 'my\ ports/'
+  [ "$output" = 'my ports/old/' ]
+  completed attest run --port ./my # files are completed by the shell
+  [ -z "$output" ]
 }
 
 @test "names of files are completed without being expanded" {
@@ -139,6 +180,7 @@ completed() {
   command -v zsh >/dev/null || skip "zsh is not installed"
   "$ATTEST" help --completion zsh >_attest
   zsh -n _attest
+  touch mine.so
   # A shell in a terminal of its own, whose first TAB loads the file.
   cat >tab.zsh <<'ZSH'
 zmodload zsh/zpty
@@ -149,6 +191,17 @@ zpty -w -n shell $'attest new-port mine --lang pyt\t'
 zpty -r -m shell line '*--lang python*'
 zpty -w -n shell $'\C-uattest ru\t'
 zpty -r -m shell line '*attest run*'
+zpty -w -n shell $'\C-uattest run --port fault:tpa-mis\t'
+zpty -r -m shell line '*fault:tpa-missing*'
+zpty -w -n shell $'\C-uattest run li\t./mi\t'
+zpty -r -m shell line '*lib:./mine.so*'
+zpty -w -n shell $'\C-uattest help smo\t'
+zpty -r -m shell line '*help smoke*'
+# Descriptions, one of them of a name with a colon.
+zpty -w -n shell $'\C-uattest faults quat-order-s\t\t'
+zpty -r -m shell line "*takes the setpoint's quaternion as x, y, z, w*"
+zpty -w -n shell $'\C-uattest sim hover_\t\t'
+zpty -r -m shell line "*-- *hover*"
 print completed
 zpty -d shell
 ZSH

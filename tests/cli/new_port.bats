@@ -24,6 +24,7 @@ made() {
   grep -q "uses: ./.github/actions/attest" mine/.github/workflows/attest.yml
   grep -q "./check --github" mine/.github/actions/attest/action.yml
   grep -q "./check --html" mine/.gitlab-ci.yml
+  [ -x mine/install-attest ]
 }
 
 @test "a new port in C" { made c cc; }

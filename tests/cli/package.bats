@@ -1,12 +1,14 @@
 load common
 
-# tried [COMMAND]: runs ci/package-try on stand-ins, of which the attest COMMAND fails.
+# tried [COMMAND [PACKAGE]]: runs ci/package-try on stand-ins, of which the attest COMMAND fails.
 tried() {
   local command
-  mkdir -p usr/share/{man/man1,bash-completion/completions,zsh/vendor-completions}
+  mkdir -p usr/{bin,lib/attest}
+  mkdir -p usr/share/{man/man1,bash-completion/completions,zsh/vendor-completions,doc/attest/docs}
   for command in attest attest-run; do echo page | gzip >usr/share/man/man1/$command.1.gz; done
   tee usr/share/zsh/vendor-completions/_attest >usr/share/bash-completion/completions/attest \
     <<<completion
+  echo document >usr/share/doc/attest/docs/ports.md
   fake apt-get <<<'rm -f "$LACKS"; [ ! -e no-apt ]'
   fake dpkg-query <<<'echo attest'
   fake attest <<'FAKE'
@@ -16,7 +18,8 @@ case "$*" in
   *fault:*) exit 1 ;;
 esac
 FAKE
-  FAILS=${1-no command} PATH="$PWD/fakes:$PATH" run "$SOURCE/ci/package-try" attest.deb usr
+  ln -sf ../../fakes/attest usr/bin/attest
+  FAILS=${1-no command} PATH="$PWD/fakes:$PATH" run "$SOURCE/ci/package-try" ${2-attest.deb usr}
 }
 
 @test "a package is tried, step by step" {
@@ -44,9 +47,19 @@ FAKE
 
 @test "a package without manual or completion fails the trial" {
   for file in man/man1/attest-run.1.gz bash-completion/completions/attest \
-    zsh/vendor-completions/_attest; do
+    zsh/vendor-completions/_attest doc/attest/docs/ports.md; do
     LACKS=usr/share/$file tried
     [ "$status" -eq 1 ]
     has "usr/share/$file"
   done
+}
+
+# tests/consumer/portable.bats has a package that lacks a library.
+@test "a portable package is tried in its folder" {
+  tried "no command" usr
+  [ "$status" -eq 0 ]
+  lacks "installed with"
+  tried "sim" usr
+  [ "$status" -eq 1 ]
+  has "package: exit code 1 instead of 0: attest sim"
 }

@@ -98,6 +98,7 @@ FAKE
     cd repository
     "$ATTEST" -q sweep "$sweep" --plan $kind --shards 3 --out "../$kind"
     PATH=$(dirname "$ATTEST"):$PATH "$PYTHON" "$SOURCE/tests/cli/run_workflow.py" ../$kind/sweep.yml
+    cmp "../$kind/install-attest" "$SOURCE/ci/examples/install-attest"
     cd ..
     diff -r one repository/results
     rm -r repository
@@ -105,7 +106,7 @@ FAKE
   # A port is built first.
   cp "$STARTER" port.so
   "$ATTEST" -q sweep "$sweep" --plan github --shards 3 --out with_port --port lib:./port.so
-  grep -A3 "name: Build the port" with_port/sweep.yml | grep -q "./check --group rates"
+  grep -A3 "name: Build the port" with_port/sweep.yml | grep -q "./check --help"
 }
 
 @test "a plan that cannot work is refused" {

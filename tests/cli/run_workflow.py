@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Runs the commands of attest in a workflow of `attest sweep --plan`, as GitHub or GitLab would:
-`run_workflow.py FILE`. Exits 1 if the file lacks a part that the service needs."""
+"""Runs the commands of attest in a workflow with shards, as GitHub or GitLab would:
+`run_workflow.py FILE`. Exits 1 if the file lacks a part that the service needs. `run_workflow.py
+--scripts FOLDER FILE` only writes the shell scripts of a file into a new folder, for shellcheck."""
 
 import os
+import pathlib
 import re
 import subprocess
 import sys
@@ -37,22 +39,28 @@ def step(job: dict, key: str, value: str) -> dict:
 
 def run_github(workflow: dict) -> None:
     shard, merge = workflow["jobs"]["shard"], workflow["jobs"]["merge"]
-    assert workflow[True] == "workflow_dispatch"  # the key `on` is true in YAML 1.1
+    assert workflow[True]  # the key `on` is true in YAML 1.1
     assert merge["needs"] == "shard"
     for job in (shard, merge):
         step(job, "uses", "actions/checkout")
-        assert "$PACKAGE" in step(job, "name", "Install attest")["run"]
+        assert step(job, "name", "Install attest")["run"] == "sh install-attest"
     assert step(shard, "uses", "actions/upload-artifact")["with"]["path"] == "shards/"
     download = step(merge, "uses", "actions/download-artifact")["with"]
     assert download == {"pattern": "shard-*", "path": "shards", "merge-multiple": True}
     for index in shard["strategy"]["matrix"]["shard"]:
-        run(evaluated(step(shard, "name", "Fly")["run"], {"matrix.shard": index}))
+        run(evaluated(step(shard, "name", "Run a shard")["run"], {"matrix.shard": index}))
     run(evaluated(step(merge, "name", "Merge")["run"], {}))
 
 
 def run_gitlab(pipeline: dict) -> None:
-    shard, merge = pipeline["sweep-shard"], pipeline["sweep-merge"]
-    assert merge["needs"] == ["sweep-shard"] and shard["artifacts"]["paths"] == ["shards/"]
+    (name,) = (name for name, job in pipeline.items() if "parallel" in job)
+    shard = pipeline[name]
+    (merge,) = (job for job in pipeline.values() if job.get("needs") == [name])
+    assert shard["artifacts"]["paths"] == ["shards/"] and merge["extends"] == shard["extends"]
+    first, *others = pipeline[merge["extends"]]["before_script"]
+    assert first == "sh install-attest"
+    for line in others:
+        run(line)
     count = shard["parallel"]
     for index in range(1, count + 1):
         for line in shard["script"]:
@@ -61,11 +69,32 @@ def run_gitlab(pipeline: dict) -> None:
         run(line)
 
 
-def main(file: str) -> None:
-    with open(file, encoding="utf-8") as text:
+def scripts_of(part: object) -> list[str]:
+    """GitHub runs the texts of `run`, GitLab the lists `before_script` and `script`."""
+    if isinstance(part, list):
+        return [script for one in part for script in scripts_of(one)]
+    if not isinstance(part, dict):
+        return []
+    found = [part["run"]] if isinstance(part.get("run"), str) else []
+    found += ["\n".join(part[key]) for key in ("before_script", "script") if key in part]
+    return found + [script for one in part.values() for script in scripts_of(one)]
+
+
+def write_scripts(folder: str, workflow: dict) -> None:
+    os.mkdir(folder)
+    for number, script in enumerate(scripts_of(workflow)):
+        text = "#!/bin/sh -e\n" + re.sub(r"\$\{\{.*?\}\}", "VALUE", script) + "\n"
+        pathlib.Path(folder, f"{number}.sh").write_text(text, encoding="utf-8")
+
+
+def main(*arguments: str) -> None:
+    with open(arguments[-1], encoding="utf-8") as text:
         workflow = yaml.safe_load(text)
-    (run_github if "jobs" in workflow else run_gitlab)(workflow)
+    if arguments[0] == "--scripts":
+        write_scripts(arguments[1], workflow)
+    else:
+        (run_github if "jobs" in workflow else run_gitlab)(workflow)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*sys.argv[1:])

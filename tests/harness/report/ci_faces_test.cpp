@@ -71,6 +71,16 @@ TEST(GithubSummary, IsTheSummaryAsPreformattedText) {
   EXPECT_THAT(github_summary(passing_run(), 1.2, {}), HasSubstr("### attest: PASS"));
 }
 
+TEST(GithubSummary, HasATableOfGroupsAndRates) {
+  RunResult run = sample_run();
+  const std::string text = github_summary(run, 1.2, {});
+  EXPECT_THAT(text, HasSubstr("\n| group | 100 | 250 | 1000/3 | 3000 | total |\n"
+                              "|---|---:|---:|---:|---:|---:|\n"
+                              "| attitude | \u274c 1/2 |"));
+  for (VectorResult& result : run.results) result.group = "a|<b>\n# c";
+  EXPECT_THAT(github_summary(run, 1.2, {}), HasSubstr("\n| a\\|\\<b>"));
+}
+
 TEST(CodeQuality, HasEachFailingCaseOnce) {
   const std::string text = code_quality_report(sample_run(), {});
   EXPECT_TRUE(is_baseline("code_quality.json", text));
