@@ -242,10 +242,10 @@ void leave_out_passing_groups(DocumentTable& table) {
     return !fails_a_run(*row.back().verdict);
   };
   const auto sums = std::prev(table.rows.end());
-  const auto left_out = std::ranges::remove_if(table.rows.begin(), sums, passes);
-  if (left_out.empty()) return;
+  const auto left_out = std::remove_if(table.rows.begin(), sums, passes);
+  if (left_out == sums) return;
   table.caption += "; groups without a failure are left out";
-  table.rows.erase(left_out.begin(), sums);
+  table.rows.erase(left_out, sums);
 }
 
 std::string matrices(const RunResult& run, TerminalStyle style, bool verbose) {
