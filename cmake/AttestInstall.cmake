@@ -43,6 +43,7 @@ set(documents
     LICENSE
     README.md
     benchmarks/RESULTS.md
+    cases/CORE
     cases/README.md
     ci/examples/Dockerfile
     ci/examples/github-action.yml
@@ -59,6 +60,7 @@ set(documents
     controller/starters/c_program/README.md
     controller/starters/simulink/README.md
     docs/flights.md
+    docs/hunt.md
     docs/levels.md
     docs/own_law.md
     docs/ports.md

@@ -7,7 +7,7 @@ load common
   [ "$status" -eq 0 ]
   has "px4-v1.16.0/flight/hover@250-1000hz-iris-mujoco  3000 ticks"
   has "px4-v1.16.0/flight/hover@250-1000hz-iris-ode  3000 ticks"
-  grep -q "vehicle_torque_setpoint" h.html
+  grep -q "Torque setpoint" h.html
   run "$ATTEST" sim hover --rate 250:8000 --plant ode --out flown.csv
   [ "$status" -eq 0 ]
   has "24000 ticks"

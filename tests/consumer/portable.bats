@@ -3,7 +3,6 @@
 # starter).
 
 setup_file() {
-  command -v patchelf >/dev/null || skip "patchelf is not installed"
   XZ_OPT=-0 "$SOURCE/ci/portable" "$INSTALLED" "$BATS_FILE_TMPDIR/attest.tar.xz"
 }
 
