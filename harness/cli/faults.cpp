@@ -7,7 +7,6 @@
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/interrupt.hpp"
-#include "harness/core/suggestion.hpp"
 #include "harness/diagnosis/core_suite.hpp"
 #include "harness/diagnosis/diagnose_catalogue.hpp"
 #include "harness/diagnosis/fault_job.hpp"
@@ -191,14 +190,9 @@ std::vector<const Fault*> of_law_of(const std::string& profile, std::vector<cons
 // The requested profiles; by default all profiles of the laws to which the faults belong.
 Result<std::vector<std::string>> chosen_profiles(const FaultOptions& options,
                                                  const std::vector<const Fault*>& faults) {
-  const std::vector<std::string> known = known_profile_names();
-  for (const std::string& name : options.profiles) {
-    if (find_profile(name) != nullptr) continue;
-    return fail(fmt::format("no profile `{}`{}; there are {}", name, suggestion(name, known),
-                            fmt::join(known, ", ")));
-  }
+  if (auto known = check_profiles(options.profiles); !known) return tl::unexpected(known.error());
   if (!options.profiles.empty()) return options.profiles;
-  std::vector<std::string> profiles = known;
+  std::vector<std::string> profiles = known_profile_names();
   std::erase_if(profiles, [&](const std::string& name) { return of_law_of(name, faults).empty(); });
   return profiles;
 }

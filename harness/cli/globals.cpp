@@ -33,9 +33,10 @@ Result<std::vector<SelectedCase>> failed_in(const std::string& report,
   return fail_at(report, "no selected vector failed in it; run without --rerun-failed");
 }
 
-// The vectors of the files CORE. A line is an id, or begins with #.
+// The vectors of the files CORE. A line is an id, or begins with #. `are_all`: `cases` are all
+// cases of the suite, so all ids must be theirs.
 Result<std::vector<SelectedCase>> core_of_suite(const CaseFolders& folders,
-                                                std::vector<SelectedCase> cases) {
+                                                std::vector<SelectedCase> cases, bool are_all) {
   std::set<std::string> ids;
   for (const std::filesystem::path& folder : folders) {
     std::ifstream file(folder / "CORE");
@@ -48,6 +49,15 @@ Result<std::vector<SelectedCase>> core_of_suite(const CaseFolders& folders,
                    "the suite has no core; write this file with `attest faults --core`");
   }
   cases = keep_vectors(std::move(cases), ids);
+  for (const auto& [the_case, configurations] : cases) {
+    for (const RunConfiguration& one : configurations) ids.erase(the_case.id_at(one));
+  }
+  if (are_all && !ids.empty()) {
+    return fail_at((folders.back() / "CORE").string(),
+                   fmt::format("the suite has no vector {}; write this file anew with `attest "
+                               "faults --core`",
+                               *ids.begin()));
+  }
   if (!cases.empty()) return cases;
   return fail("no selected vector is of the core; run without --core");
 }
@@ -74,7 +84,9 @@ std::string SelectionOptions::narrowing() const {
                              {"--vehicle", vehicles},
                              {"--plant", plants}});
   if (core) options.emplace_back("--core");
-  if (!rerun_failed.empty()) options.push_back("--rerun-failed " + rerun_failed);
+  if (!rerun_failed.empty()) {
+    options.push_back(last_failed ? "--last-failed" : "--rerun-failed " + rerun_failed);
+  }
   return fmt::format("{}", fmt::join(options, " "));
 }
 
@@ -103,7 +115,11 @@ Result<std::vector<SelectedCase>> SelectionOptions::cases_in(const CaseFolders& 
   if (!part) return tl::unexpected(part.error());
   selection.shard = *part;
   auto cases = select_cases(folders, selection);
-  if (cases && core) cases = core_of_suite(folders, *std::move(cases));
+  if (cases && core) {
+    SelectionOptions without_core = *this;
+    without_core.core = false;
+    cases = core_of_suite(folders, *std::move(cases), without_core.selects_all());
+  }
   if (!cases || rerun_failed.empty()) return cases;
   return failed_in(rerun_failed, *std::move(cases));
 }

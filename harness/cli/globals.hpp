@@ -41,6 +41,7 @@ struct SelectionOptions {
   std::string shard = "1/1";
   bool core = false;         // only the vectors that the file CORE of the cases names
   std::string rerun_failed;  // a JSON report: only vectors that failed in it; empty: no report
+  bool last_failed = false;  // rerun_failed is the report of the last run in this folder
 
   bool selects_all() const {
     return filters.empty() && excludes.empty() && groups.empty() && profiles.empty() &&

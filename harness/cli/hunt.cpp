@@ -20,6 +20,7 @@
 #include "harness/core/version.hpp"
 #include "harness/port/profiles.hpp"
 #include "harness/report/hunt_document.hpp"
+#include "harness/report/progress.hpp"
 #include "harness/report/report.hpp"
 #include "harness/report/text.hpp"
 #include "harness/trace/csv.hpp"
@@ -89,40 +90,36 @@ Result<std::vector<ModuleUnderTest>> subjects_of(const HuntCommandOptions& optio
                           fmt::join(options.profiles, ", ")));
 }
 
-Result<void> check_profiles(const std::vector<std::string>& profiles) {
-  const auto names = known_profile_names();
-  for (const std::string& profile : profiles) {
-    if (find_profile(profile) != nullptr) continue;
-    return fail(fmt::format("--profile {}: unknown{}", profile,
-                            suggestion(profile, {names.begin(), names.end()})));
-  }
-  return {};
-}
-
-// A line for each round, which on a terminal replaces the last one.
+// The progress on stderr, in the form that Progress has: after each round on a terminal, else every
+// 30 s.
 class HuntProgressLine {
  public:
   explicit HuntProgressLine(bool is_quiet)
-      : is_visible_(!is_quiet && terminal_style(stderr).width > 0), begin_(Clock::now()) {}
+      : form_(Progress::on_stderr(is_quiet).form), begin_(Clock::now()), latest_(begin_) {}
   ~HuntProgressLine() { erase(); }
 
-  void show(const HuntProgress& now) const {
-    if (!is_visible_) return;
-    const double passed_s = std::chrono::duration<double>(Clock::now() - begin_).count();
+  void show(const HuntProgress& now) {
+    const bool is_drawn = form_ == Progress::Form::drawn;
+    const bool is_due =
+        form_ == Progress::Form::lines && Clock::now() - latest_ >= Progress::line_interval;
+    if (!is_drawn && !is_due) return;
+    latest_ = Clock::now();
+    const double passed_s = std::chrono::duration<double>(latest_ - begin_).count();
     fmt::print(stderr,
-               "\r\x1b[K{} steps, {:.0f} steps/s, {} met, {} failing trials, largest deviation "
-               "of others {:.3f} of the tolerance",
-               now.steps, static_cast<double>(now.steps) / passed_s, now.met.count(), now.failures,
-               now.deviation);
+               "{}{} steps, {:.0f} steps/s, {} met, {} failing trials, largest deviation of others "
+               "{:.3f} of the tolerance{}",
+               is_drawn ? "\r\x1b[K" : "attest: ", now.steps,
+               static_cast<double>(now.steps) / passed_s, now.met.count(), now.failures,
+               now.deviation, is_drawn ? "" : "\n");
     std::fflush(stderr);
   }
   void erase() const {
-    if (is_visible_) fmt::print(stderr, "\r\x1b[K");
+    if (form_ == Progress::Form::drawn) fmt::print(stderr, "\r\x1b[K");
   }
 
  private:
-  bool is_visible_;
-  Clock::time_point begin_;
+  Progress::Form form_;
+  Clock::time_point begin_, latest_;
 };
 
 // A name for which `folder` has no other case: "cascade_d_reversed_2".
@@ -185,11 +182,13 @@ Result<HuntPlan> make_hunt_plan(const HuntCommandOptions& options) {
   auto port =
       prepare_port(plan.host, options.profiles.empty() ? known_profile_names() : options.profiles);
   if (!port) return tl::unexpected(port.error());
+  for (const std::string& fault : {port->hangs, port->goes_wrong}) {
+    if (!fault.empty()) return fail(fmt::format("{}: {}", options.host.port, fault));
+  }
   if (port->fraction_bits) {
     return fail(
         "a port in fixed point cannot be hunted: its errors add up, and in random inputs a hunt "
-        "cannot tell them from mistakes; `attest run` judges it by cases that are known to be "
-        "fair");
+        "cannot tell them from mistakes; `attest run` judges it by its number of fraction bits");
   }
   auto subjects = subjects_of(options, *port);
   if (!subjects) return tl::unexpected(subjects.error());
@@ -227,16 +226,22 @@ int hunt_command(const HuntCommandOptions& options, const Globals& globals) {
   if (!html) return report_error(html.error());
   auto plan = make_hunt_plan(options);
   if (!plan) return report_error(plan.error());
-  const HuntProgressLine line(globals.quiet);
+  HuntProgressLine line(globals.quiet);
   const auto begin = Clock::now();
   plan->hunt.is_over = [&] {
     const std::chrono::duration<double> passed = Clock::now() - begin;
     return options.seconds && passed.count() >= *options.seconds;
   };
   plan->hunt.on_round = [&](const HuntProgress& now) { line.show(now); };
+  bool was_interrupted = false;
+  plan->hunt.on_end = [&] {
+    line.erase();
+    was_interrupted = interrupted();
+    if (!was_interrupted) return;
+    fmt::print(stderr, "attest: interrupted; shrinking what was found\n");
+    forget_interrupt();
+  };
   auto found = hunt(plan->hunt, plan->host);
-  line.erase();
-  if (interrupted()) return exit_interrupted;
   if (!found) return report_error(found.error());
   if (auto same = check_port(plan->host); !same) return report_error(same.error());
   HuntReport& report = plan->report;
@@ -258,6 +263,7 @@ int hunt_command(const HuntCommandOptions& options, const Globals& globals) {
                report.found.progress.steps, cpu,
                static_cast<double>(report.found.progress.steps) / std::max(cpu, 1e-3));
   }
+  if (was_interrupted) return exit_interrupted;
   return is_clean ? exit_ok : exit_failed;
 }
 
@@ -287,12 +293,7 @@ void add_hunt_reports(Command command, HuntCommandOptions& options) {
       .type("DIR")
       .group(option_group::reports);
   add_page(command, options.html, "a page with the findings");
-  command.option("--json", options.json, "Write the findings as JSON")
-      .type("F")
-      .group(option_group::reports);
-  command.option("--junit", options.junit, "Write a JUnit XML report")
-      .type("F")
-      .group(option_group::reports);
+  add_json_and_junit(command, options.json, "Write the findings as JSON", options.junit);
 }
 
 }  // namespace

@@ -16,7 +16,6 @@
 #include "harness/casefile/stimulus.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
-#include "harness/core/suggestion.hpp"
 #include "harness/plant/vehicle.hpp"
 #include "harness/port/features.hpp"
 #include "harness/port/profiles.hpp"
@@ -33,14 +32,9 @@ struct ListOptions {
 
 // The requested profiles; by default all.
 Result<std::vector<const ProfileInfo*>> chosen_profiles(const std::vector<std::string>& names) {
+  if (auto known = check_profiles(names); !known) return tl::unexpected(known.error());
   std::vector<const ProfileInfo*> profiles;
-  for (const std::string& name : names) {
-    profiles.push_back(find_profile(name));
-    if (profiles.back()) continue;
-    const auto all = known_profile_names();
-    return fail(fmt::format("no profile `{}`{}; there are {}", name, suggestion(name, all),
-                            fmt::join(all, ", ")));
-  }
+  for (const std::string& name : names) profiles.push_back(find_profile(name));
   if (!profiles.empty()) return profiles;
   for (const ProfileInfo& profile : known_profiles()) profiles.push_back(&profile);
   return profiles;

@@ -88,7 +88,7 @@ void run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
 
 int run_command(const RunOptions& given, const Globals& globals) {
   RunOptions options = given;
-  if (options.last_failed) {
+  if (options.select.last_failed) {
     auto report = last_failed_run();
     if (!report) return report_error(report.error());
     options.select.rerun_failed = *std::move(report);
@@ -203,7 +203,7 @@ void add_run(const CommandLine& line) {
       .group(option_group::selection);
   command
       .flag(
-          "--last-failed", options->last_failed,
+          "--last-failed", options->select.last_failed,
           "Run only the vectors that failed in the last run in this folder; give the same --port, "
           "--level and --param as in that run")
       .group(option_group::selection)

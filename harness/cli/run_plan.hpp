@@ -19,7 +19,6 @@ struct RunOptions {
   HostOptions host;
   int jobs = 1;
   bool fail_fast = false;
-  bool last_failed = false;  // select.rerun_failed is the report of the last run in this folder
   std::vector<std::string> parameters;  // NAME=VALUE
   std::string level = "numeric";
   ReportOptions report;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/core/suggestion.hpp"
 #include "harness/golden/recorded.hpp"
 #include "harness/port/port.hpp"
 #include "harness/port/profiles.hpp"
@@ -70,6 +71,13 @@ void add_timeout(Command command, double& timeout_s) {
 void add_page(Command command, std::string& file, const char* what) {
   command.option("--html", file, fmt::format("Write {}", what))
       .type("F.html")
+      .group(option_group::reports);
+}
+
+void add_json_and_junit(Command command, std::string& json, const char* what, std::string& junit) {
+  command.option("--json", json, what).type("F").group(option_group::reports);
+  command.option("--junit", junit, "Write a JUnit XML report")
+      .type("F")
       .group(option_group::reports);
 }
 
@@ -151,6 +159,16 @@ void add_selection(Command command, SelectionOptions& options, Selects selects) 
 std::string full_profile_name(const std::string& given) {
   const std::string full = "px4-" + given;
   return find_profile(full) != nullptr ? full : given;
+}
+
+Result<void> check_profiles(const std::vector<std::string>& names) {
+  const std::vector<std::string> known = known_profile_names();
+  for (const std::string& name : names) {
+    if (find_profile(name) != nullptr) continue;
+    return fail(fmt::format("no profile `{}`{}; there are {}", name, suggestion(name, known),
+                            fmt::join(known, ", ")));
+  }
+  return {};
 }
 
 void add_assumed(Command command, std::vector<std::string>& assumed) {

@@ -36,12 +36,16 @@ void add_port(Command command, HostOptions& host, Ports accepted = Ports::callab
 void add_port_argument(Command command, HostOptions& host);
 // The name of a profile: "v1.5.5" becomes "px4-v1.5.5", if there is such a profile.
 std::string full_profile_name(const std::string& given);
+// Errors: one of the names is not that of a profile.
+Result<void> check_profiles(const std::vector<std::string>& names);
 
 // --assume: assumptions that replace the topics that a flight log lacks.
 void add_assumed(Command command, std::vector<std::string>& assumed);
 void add_timeout(Command command, double& timeout_s);
 // --html: the file of a page; `what` describes the page.
 void add_page(Command command, std::string& file, const char* what);
+// --json and --junit: files of reports.
+void add_json_and_junit(Command command, std::string& json, const char* what, std::string& junit);
 // `usual` describes the default, which is one per CPU.
 Option add_jobs(Command command, int& jobs, const char* what,
                 const char* usual = "one for each CPU");

@@ -302,12 +302,7 @@ void add_stress_reports(Command command, StressOptions& options) {
       .type("F")
       .group(option_group::reports);
   add_page(command, options.html, "a page with the distributions of the times and a timeline");
-  command.option("--json", options.json, "Write all measurements as JSON")
-      .type("F")
-      .group(option_group::reports);
-  command.option("--junit", options.junit, "Write a JUnit XML report")
-      .type("F")
-      .group(option_group::reports);
+  add_json_and_junit(command, options.json, "Write all measurements as JSON", options.junit);
 }
 
 }  // namespace

@@ -30,6 +30,8 @@ constexpr std::size_t most_kept = 1500;
 constexpr std::size_t most_same = 3;
 // Trials that pass, to tell faults apart.
 constexpr std::size_t most_passing_trials = 8;
+// Without an answer in time, after which the hunt ends.
+constexpr std::size_t most_timeouts = 5;
 
 struct Failure {
   std::size_t target;
@@ -61,7 +63,9 @@ class Hunt {
     do {
       if (auto done = round(); !done) return tl::unexpected(done.error());
       options_.on_round(run_.progress);
-    } while (run_.progress.steps < options_.least_steps && !options_.is_over() && !options_.stop());
+    } while (run_.progress.steps < options_.least_steps && !options_.is_over() &&
+             run_.ended_early.empty());
+    options_.on_end();
     if (auto found = find(); !found) return tl::unexpected(found.error());
     return std::move(run_);
   }
@@ -80,7 +84,8 @@ class Hunt {
   const HuntOptions& options_;
   const HostOptions& host_;
   std::vector<HuntedTarget> targets_;
-  std::uint64_t next_ = 0;  // trial
+  std::uint64_t next_ = 0;    // trial
+  std::size_t timeouts_ = 0;  // trials that ended by one
   std::vector<Failure> failures_;
   std::map<std::size_t, std::vector<HuntInputs>> passing_;  // by target
   HuntRun run_;
@@ -93,6 +98,7 @@ Result<std::vector<R>> Hunt::results_of(const Jobs<R>& jobs) const {
   workers.in_process = host_.in_process;
   workers.stop = options_.stop;
   JobResults<R> outcome = run_jobs(jobs, workers);
+  if (options_.stop()) return fail("interrupted");
   if (!outcome.errors.empty()) return tl::unexpected(outcome.errors.front());
   return std::move(outcome.results);
 }
@@ -106,12 +112,19 @@ Result<void> Hunt::round() {
         std::make_unique<TrialJob>(targets_, options_.seed, next_ + part * count, count, host_));
   }
   const auto results = results_of(jobs);
+  if (options_.stop()) {
+    run_.ended_early = "interrupted";
+    return {};
+  }
   if (!results) return tl::unexpected(results.error());
   next_ += parts_of_round * count;
   std::vector<std::size_t> kept_before;
   for (const HuntedTarget& target : targets_) kept_before.push_back(target.kept.size());
   for (const HuntTrials& trials : *results) {
     for (const HuntTrial& trial : trials) take(trial, kept_before);
+  }
+  if (timeouts_ >= most_timeouts) {
+    run_.ended_early = fmt::format("the port did not answer in time in {} trials", timeouts_);
   }
   return {};
 }
@@ -128,6 +141,7 @@ void Hunt::take(const HuntTrial& trial, const std::vector<std::size_t>& kept_bef
   };
   if (trial.failure) {
     ++run_.progress.failures;
+    timeouts_ += trial.failure->verdict == Verdict::timeout ? 1 : 0;
     return note_failure(index, inputs(), *trial.failure);
   }
   auto& passing = passing_[index];

@@ -33,7 +33,10 @@ struct HuntOptions {
   std::size_t least_steps = 1'000'000;  // the hunt ends after the round that reaches them
   std::function<bool()> is_over = [] { return false; };  // asked after a round, too
   int processes = 1;
-  std::function<bool()> stop = [] { return false; };  // true: the result is not needed
+  // True: end soon. The round is not counted; findings of the rounds before it are made.
+  std::function<bool()> stop = [] { return false; };
+  // Called after the last round. If stop() is still true, no findings are made.
+  std::function<void()> on_end = [] {};
   std::function<void(const HuntProgress&)> on_round = [](const HuntProgress&) {};
 };
 
@@ -52,9 +55,12 @@ struct HuntFinding {
 struct HuntRun {
   HuntProgress progress;
   std::vector<HuntFinding> findings;  // in the order in which they were found
+  std::string ended_early;            // why; empty: by least_steps or is_over()
 };
 
-// Errors: the port cannot be started, the reference fails, a case does not make its inputs.
+// A hunt ends when the port did not answer in time in five trials, each of which costs the time
+// limit. REQUIRES: HostOptions::said. Errors: the port cannot be started, the reference fails, a
+// case does not make its inputs, stop() after the last round.
 Result<HuntRun> hunt(const HuntOptions& options, const HostOptions& host);
 
 }  // namespace attest

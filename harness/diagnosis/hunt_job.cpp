@@ -91,11 +91,11 @@ Result<HuntTrials> TrialJob::run(std::size_t) {
     const HuntInputs inputs = make_trial(hunted.target, seed_, number, hunted.kept);
     auto trial = judge_trial(inputs, hunted.target.lacks, *host, hunted.target.level);
     if (!trial) return tl::unexpected(trial.error());
-    // A port that did not answer in time gets no more requests.
-    if (trial->failure && trial->failure->verdict == Verdict::timeout) host.reset();
+    const bool hangs = trial->failure && trial->failure->verdict == Verdict::timeout;
     trial->number = number;
     trial->meets &= ~hunted.met;
     trials.push_back(*std::move(trial));
+    if (hangs) break;  // each further trial may cost the time limit
   }
   return trials;
 }

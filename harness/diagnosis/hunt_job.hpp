@@ -31,7 +31,8 @@ struct Codec<HuntTrials> {
   static Result<HuntTrials> decode(const std::string& text);
 };
 
-// HuntTrial::meets has only what HuntedTarget::met has not.
+// HuntTrial::meets has only what HuntedTarget::met has not. A trial in which the port does not
+// answer in time is the last one.
 class TrialJob final : public PortJob<HuntTrials> {
  public:
   // The trials from `first` on, of which each target has its turn. REQUIRES: `targets` outlives

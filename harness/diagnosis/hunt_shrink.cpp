@@ -23,6 +23,8 @@ class Shrinker {
       : target_(target), best_(std::move(best)), options_(options) {}
 
   Result<ShrunkTrial> shrunk() {
+    // Each attempt would cost the time limit.
+    if (best_.failure.verdict == Verdict::timeout) return best_;
     cut_end();
     for (int pass = 0; pass < 3 && !error_; ++pass) {
       const std::size_t before = size();

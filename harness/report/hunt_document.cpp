@@ -62,8 +62,15 @@ void add_lines(const HuntFinding& finding, const HuntReport::Written& written,
   }
   if (!written.case_file.empty()) lines.emplace_back("  case: " + written.case_file);
   if (!written.command.empty()) lines.emplace_back("  reproduce: " + written.command);
-  if (written.case_file.empty()) {
-    for (const std::string& line : lines_of(finding.toml)) lines.emplace_back("    " + line);
+  if (!written.case_file.empty()) return;
+  constexpr std::size_t most_lines = 40;
+  const auto text = lines_of(finding.toml);
+  for (std::size_t i = 0; i < std::min(text.size(), most_lines); ++i) {
+    lines.emplace_back("    " + text[i]);
+  }
+  if (text.size() > most_lines) {
+    lines.emplace_back(
+        fmt::format("    and {} more lines; --out DIR writes it", text.size() - most_lines));
   }
 }
 
@@ -75,6 +82,8 @@ Document hunt_document(const HuntReport& report) {
   document.head = {findings.empty() ? Verdict::pass : Verdict::fail,
                    findings.empty() ? "pass" : "fail", title_of(report), sentence_of(report)};
   document.facts = {{"attest", report.run.attest_version}, {"port", report.run.port}};
+  const std::string& ended_early = report.found.ended_early;
+  if (!ended_early.empty()) document.notes.push_back({"ended early: " + ended_early, false});
   if (findings.empty()) return document;
   DocumentTable table{"Findings",
                       {"case", "profile", "module", "rate [Hz]", "ticks", "trials", "resembles"}};
@@ -125,6 +134,7 @@ std::string hunt_json(const HuntReport& report) {
                       {"seed", report.seed},
                       {"trials", progress.trials},
                       {"steps", progress.steps},
+                      {"ended_early", report.found.ended_early},
                       {"findings", findings}});
 }
 

@@ -15,7 +15,6 @@ struct HuntReport {
   RunResult run;  // of the port, without results
   std::uint64_t seed = 1;
   HuntRun found;
-  double cpu_s = 0;  // of all processes
   // Of each finding: the files that were written, and the command that runs them; empty: none.
   struct Written {
     std::string case_file, trace_file, command;
@@ -26,13 +25,13 @@ struct HuntReport {
 // A row for each finding, and below the table its diagnosis, its case and its command.
 Document hunt_document(const HuntReport& report);
 
-// A result for each finding; without one, a pass for each module.
+// A result for each finding.
 RunResult run_of(const HuntReport& report);
 
 // {"schema": "attest-hunt-1", "attest_version": ..., "port": ..., "level": ..., "seed": 1,
-//  "trials": ..., "steps": ..., "findings": [{"name": ..., "fault": id or null, "trials": 12,
-//  "result": {as in the report of run}, "case": text, "case_file": ..., "trace_file": ...,
-//  "command": ...}]}. Deterministic.
+//  "trials": ..., "steps": ..., "ended_early": reason or "", "findings": [{"name": ..., "fault": id
+//  or null, "trials": 12, "result": {as in the report of run}, "case": text, "case_file": ...,
+//  "trace_file": ..., "command": ...}]}. Deterministic.
 std::string hunt_json(const HuntReport& report);
 
 }  // namespace attest

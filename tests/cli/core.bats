@@ -35,6 +35,10 @@ load common
   run "$ATTEST" --suite suite run --core --rate 50
   [ "$status" -eq 2 ]
   has "no selected vector is of the core; run without --core"
+  echo "px4-v1.5.5/attitude/gone@250hz" >>suite/cases/CORE
+  run "$ATTEST" --suite suite run --core
+  [ "$status" -eq 2 ]
+  has "the suite has no vector px4-v1.5.5/attitude/gone@250hz"
 }
 
 @test "a board gets the core as files" {

@@ -5,8 +5,10 @@ load common
   [ "$status" -eq 0 ]
   has "PASS 0 findings"
   grep -q '"findings": \[\]' found.json
-  run "$ATTEST" hunt --steps 100000 --level exact
-  [ "$status" -eq 0 ]
+  for port in builtin "lib:$STARTER"; do
+    run "$ATTEST" hunt --steps 300000 --level exact --port "$port"
+    [ "$status" -eq 0 ]
+  done
   for port in right_quaternion right_cascade_quaternion; do
     run "$ATTEST" hunt --steps 100000 --port "lib:$PORTS/$port.so"
     [ "$status" -eq 0 ]
@@ -68,6 +70,33 @@ load common
   [ "$(find ours -name 'cascade_d_reversed*.toml' | wc -l)" -eq 2 ]
   run "$ATTEST" hunt --steps 1000 --out "$SOURCE"
   [ "$status" -eq 2 ]
+}
+
+@test "a port that hangs ends a hunt, also if it hangs when it is loaded" {
+  run timeout 60 "$ATTEST" hunt --port "lib:$PORTS/port_hang.so" --timeout 0.2 --steps 1e9
+  [ "$status" -eq 1 ]
+  has "ended early: the port did not answer in time in "
+  has "timeout"
+  for port in port_hangs_in_create port_hangs_in_load; do
+    run timeout 60 "$ATTEST" hunt --port "lib:$PORTS/$port.so" --timeout 0.2
+    [ "$status" -eq 2 ]
+    has "$port.so: "
+    has "no answer within 0.2 s"
+  done
+}
+
+@test "Ctrl-C ends a hunt with what was found" {
+  "$ATTEST" hunt --port fault:cascade-d-reversed --module rate_unit --steps 1e12 --jobs 2 \
+    --json found.json >out.txt 2>err.txt &
+  pid=$!
+  sleep 6
+  kill -INT $pid
+  status=0
+  wait $pid || status=$?
+  [ "$status" -eq 130 ]
+  grep -q "ended early: interrupted" out.txt
+  grep -q '"fault": "cascade-d-reversed"' found.json
+  grep -q '"ended_early": "interrupted"' found.json
 }
 
 @test "a port that crashes is a finding, and wrong options are errors" {

@@ -224,6 +224,7 @@ refused() {
   cd ..
   run "$ATTEST" run --last-failed
   [ "$status" -eq 0 ]
+  has "only --last-failed"
   run "$ATTEST" run --last-failed
   [ "$status" -eq 2 ]
 }
