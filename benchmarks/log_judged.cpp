@@ -13,17 +13,12 @@
 #include "harness/ulog/reader.hpp"
 #include "harness/ulog/writer.hpp"
 #include "harness/verify/evaluate_log.hpp"
+#include "tests/harness/ulog/crafted.hpp"
 
 namespace attest::bench {
 namespace {
 
-// The bytes of these values, one after the other.
-template <typename... Values>
-std::string raw(Values... values) {
-  std::string bytes;
-  (bytes.append(reinterpret_cast<const char*>(&values), sizeof values), ...);
-  return bytes;
-}
+using ulog::raw;
 
 constexpr auto definitions = std::to_array<const char*>({
     "vehicle_control_mode:uint64_t timestamp;bool flag_armed;bool flag_control_attitude_enabled;"
