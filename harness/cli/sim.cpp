@@ -14,9 +14,12 @@
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
+#include "harness/golden/reference.hpp"
 #include "harness/host/file_format.hpp"
 #include "harness/loop/case_timing.hpp"
+#include "harness/report/failure_text.hpp"
 #include "harness/report/flight_document.hpp"
+#include "harness/verify/fixed_step.hpp"
 #include "harness/verify/simulate.hpp"
 
 namespace attest::cli {
@@ -35,6 +38,8 @@ constexpr std::string_view all_plants = "all";
 // Without --rate; those of most flights of PX4.
 constexpr const char* default_rate = "250";
 constexpr const char* default_rates_of_units = "250:1000";
+
+constexpr const char* outputs_deviate = "outputs deviate from the reference's for the same inputs";
 
 // The file of the attitude unit's trace, next to the rate unit's: "flown.attitude_unit.csv". Empty:
 // that trace is not written, because there is no --out, or --out is stdout, which takes one trace.
@@ -131,6 +136,38 @@ Result<std::vector<SimulatedFlight>> fly_all(const Sim& sim, const HostOptions& 
   return flights;
 }
 
+// The flights and their document.
+struct Simulation {
+  std::vector<SimulatedFlight> flights;
+  Document document;
+};
+
+// The reference flies as well, for the page and to find the first deviation.
+Result<Simulation> simulate(const Sim& sim, const HostOptions& options, const Declarations& port) {
+  auto flights = fly_all(sim, options);
+  if (!flights) return tl::unexpected(flights.error());
+  const RunConfiguration& first = sim.configurations.front();
+  FlightBackground background;
+  if (options.port != HostOptions().port) {
+    for (SimulatedFlight& flight : *flights) {
+      auto noted = note_deviations(sim.the_case, port, flight);
+      if (!noted) return tl::unexpected(noted.error());
+    }
+    auto right = open_reference({&sim.the_case, sim.vehicle_model.get()})
+                     ->fly({first, sim.timing, has_fixed_step(port, sim.the_case)});
+    if (!right) return tl::unexpected(right.error());
+    background.reference = *std::move(right);
+  }
+  background.marks = marks_of(sim.the_case, flights->front());
+  Document document = flight_document(*flights, port, background);
+  if (const auto& deviation = flights->front().result.first) {
+    document.notes.push_back({fmt::format("{}, first at tick {}. The verdict is of the metrics.",
+                                          outputs_deviate, deviation->tick),
+                              true, false});
+  }
+  return Simulation{*std::move(flights), std::move(document)};
+}
+
 Result<void> write(const std::vector<SimulatedFlight>& flights, const Document& document,
                    SimFiles files) {
   const Flown& flown = flights.front().flown;
@@ -156,6 +193,8 @@ void print(const VectorResult& result, const SimOptions& options, bool is_writte
   fmt::print(to, "{}  {} ticks{}{}\n", result.id(), result.ticks, files.empty() ? "" : " -> ",
              fmt::join(files, ", "));
   if (!result.reason.empty()) fmt::print(to, "  {}: {}\n", name_of(result.verdict), result.reason);
+  if (result.first) fmt::print(to, "{}:\n", outputs_deviate);
+  fmt::print(to, "{}", finding_text(result, Level::numeric));
 }
 
 int sim_command(const SimOptions& options, const Globals& globals) {
@@ -166,19 +205,19 @@ int sim_command(const SimOptions& options, const Globals& globals) {
   HostOptions host = options.host;
   const auto port = prepare_port(host);
   if (!port) return report_error(port.error());
-  const auto flights = fly_all(*sim, host);
-  if (!flights) return report_error(flights.error());
+  const auto simulation = simulate(*sim, host, *port);
+  if (!simulation) return report_error(simulation.error());
+  const auto& [flights, document] = *simulation;
   if (auto same = check_port(host); !same) return report_error(same.error());
   // Files of an earlier command are kept if no flight has a result.
   const bool any_result =
-      std::any_of(flights->begin(), flights->end(),
+      std::any_of(flights.begin(), flights.end(),
                   [](const SimulatedFlight& flight) { return is_judged(flight.result.verdict); });
-  const Document document = flight_document(*flights, *port);
-  const auto written = any_result ? write(*flights, document, *std::move(files)) : Result<void>();
+  const auto written = any_result ? write(flights, document, *std::move(files)) : Result<void>();
   if (!written) return report_error(written.error());
   std::FILE* const to = options.out == "-" || options.html == "-" ? stderr : stdout;
   bool any_fails = false, any_shown = false;
-  for (const SimulatedFlight& flight : *flights) {
+  for (const SimulatedFlight& flight : flights) {
     const Verdict verdict = flight.result.verdict;
     const bool is_shown = !globals.quiet || verdict != Verdict::pass;
     if (is_shown) print(flight.result, options, any_result, to);

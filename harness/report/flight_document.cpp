@@ -23,6 +23,7 @@ namespace {
 struct NamedFlight {
   std::string name;  // the name of the plant; empty for a single flight
   const Flown* flown;
+  bool is_reference = false;
 };
 
 constexpr std::size_t most_frames = 2000;  // of the animation, evenly spaced
@@ -37,8 +38,7 @@ std::vector<float> column(const Trace& flown, std::string_view name) {
     return values;
   }
   const auto columns = plant_columns();
-  const auto found = std::find_if(columns.begin(), columns.end(),
-                                  [&](const PlantColumn& one) { return one.name == name; });
+  const auto found = std::ranges::find(columns, name, &PlantColumn::name);
   for (const PlantSample& sample : flown.plant) values.push_back(found->value(sample));
   return values;
 }
@@ -116,13 +116,15 @@ Plot plot_of(const std::vector<NamedFlight>& flights, Plot plot, const ColumnsOf
              const ColumnsOf& setpoints = {}) {
   // The lines of flights that agree coincide. A dark dotted line on a coloured line remains
   // visible.
-  constexpr int dark = 5;
+  constexpr int dark = 5, quiet = 4;
   const auto add = [&](const NamedFlight& flight, const Columns& columns, LinePattern pattern) {
     const std::string suffix = flight.name.empty() ? "" : " (" + flight.name + ")";
     for (std::size_t i = 0; i < columns.size(); ++i) {
       plot.series.push_back({columns[i].first + suffix, seconds(flight.flown->trace),
                              columns[i].second, pattern,
-                             pattern == LinePattern::dotted ? dark : static_cast<int>(i)});
+                             pattern != LinePattern::dotted ? static_cast<int>(i)
+                             : flight.is_reference          ? quiet
+                                                            : dark});
     }
   };
   for (const NamedFlight& flight : flights) {
@@ -236,7 +238,7 @@ bool is_zero(const Plot& plot) {
 
 // Setpoints are those of the first flight. Plots in which all is zero are left out. REQUIRES: at
 // least one flight.
-PlotGroup plots_of(const std::vector<NamedFlight>& flights) {
+PlotGroup plots_of(const std::vector<NamedFlight>& flights, const std::vector<PlotMark>& marks) {
   const auto attitude = [](const Flown& flown) {
     return angles(quaternions(flown.trace, "plant/vehicle_attitude.q"), "");
   };
@@ -263,7 +265,10 @@ PlotGroup plots_of(const std::vector<NamedFlight>& flights) {
   // Of the angles, rates, controls, thrust, integrals, motors, saturation and position: what an
   // engineer would call still.
   const std::array least_spans{1.0, 0.05, 0.02, 0.02, 0.002, 0.02, 1.0, 0.1};
-  for (std::size_t i = 0; i < group.plots.size(); ++i) group.plots[i].least_span = least_spans[i];
+  for (std::size_t i = 0; i < group.plots.size(); ++i) {
+    group.plots[i].least_span = least_spans[i];
+    group.plots[i].marks = marks;
+  }
   std::erase_if(group.plots, is_zero);
   return group;
 }
@@ -281,10 +286,8 @@ std::string value_of(const MetricResult& metric) {
 // A flight in which the port fails may have no metrics, so the rows are those of the flight with
 // the most metrics.
 DocumentTable metrics_table(const std::vector<SimulatedFlight>& flights) {
-  const auto most = std::max_element(flights.begin(), flights.end(),
-                                     [](const SimulatedFlight& a, const SimulatedFlight& b) {
-                                       return a.result.metrics.size() < b.result.metrics.size();
-                                     });
+  const auto most = std::ranges::max_element(
+      flights, {}, [](const SimulatedFlight& flight) { return flight.result.metrics.size(); });
   DocumentTable table{"Metrics of the flight", {"metric", "measure"}};
   for (const SimulatedFlight& flight : flights) {
     table.header.push_back(flights.size() > 1 ? plant_of(flight) : "value");
@@ -308,9 +311,9 @@ DocumentTable metrics_table(const std::vector<SimulatedFlight>& flights) {
 }
 
 DocumentHead head_of(const std::vector<SimulatedFlight>& flights, const Declarations& port) {
-  const auto failed = std::find_if(
-      flights.begin(), flights.end(),
-      [](const SimulatedFlight& flight) { return flight.result.verdict != Verdict::pass; });
+  const auto failed = std::ranges::find_if(flights, [](const SimulatedFlight& flight) {
+    return flight.result.verdict != Verdict::pass;
+  });
   const VectorResult& result = (failed == flights.end() ? flights.front() : *failed).result;
   std::string title = flights.front().result.id();
   for (std::size_t i = 1; i < flights.size(); ++i) title += " and on " + plant_of(flights[i]);
@@ -320,7 +323,8 @@ DocumentHead head_of(const std::vector<SimulatedFlight>& flights, const Declarat
 
 }  // namespace
 
-Document flight_document(const std::vector<SimulatedFlight>& flights, const Declarations& port) {
+Document flight_document(const std::vector<SimulatedFlight>& flights, const Declarations& port,
+                         const FlightBackground& background) {
   Document document{head_of(flights, port)};
   document.tables = {metrics_table(flights)};
   if (document.tables.front().rows.empty()) document.tables.clear();
@@ -335,8 +339,11 @@ Document flight_document(const std::vector<SimulatedFlight>& flights, const Decl
     if (!flight.flown.trace.samples.empty()) flown.push_back({plant, &flight.flown});
   }
   if (flown.empty()) return document;
-  document.groups = {plots_of(flown)};
   for (const NamedFlight& flight : flown) document.replay.push_back(replay_of(flight));
+  if (background.reference && !background.reference->trace.samples.empty()) {
+    flown.push_back({"reference", &*background.reference, true});
+  }
+  document.groups = {plots_of(flown, background.marks)};
   return document;
 }
 

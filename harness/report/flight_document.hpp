@@ -1,6 +1,7 @@
 // The report of `attest sim`: a flight with its metrics, plots and its animated attitude.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "harness/host/declarations.hpp"
@@ -9,10 +10,22 @@
 
 namespace attest {
 
+// What the plots show in addition to the flights.
+struct FlightBackground {
+  std::optional<Flown> reference =
+      {};  // the reference in the place of the port, on the first plant
+  std::vector<PlotMark> marks = {};
+};
+
+// Marks gusts, shifts of the centre of mass, the failure of a motor, the reset of the estimator,
+// and the first deviation in the result of the flight.
+std::vector<PlotMark> marks_of(const Case& the_case, const SimulatedFlight& flight);
+
 // Plots attitude, body rates, controls, integrals, motors, saturation and position over the time
 // since the first tick. Several flights must be those of one case on several plants. They are in
 // the same plots, with the names of the plants. A flight without a tick has no plots. REQUIRES: at
 // least one flight.
-Document flight_document(const std::vector<SimulatedFlight>& flights, const Declarations& port);
+Document flight_document(const std::vector<SimulatedFlight>& flights, const Declarations& port,
+                         const FlightBackground& background = {});
 
 }  // namespace attest

@@ -106,17 +106,6 @@ Comparison with_tightest(Comparison loop, const Comparison& answers) {
   return loop;
 }
 
-Result<Comparison> compare_units(const Flown& flown, const std::string& profile,
-                                 const Tolerances& tolerances, std::optional<int> fraction_bits) {
-  auto answers = compare_with_reference(flown.trace, profile, tolerances, fraction_bits);
-  if (!answers) return tl::unexpected(answers.error());
-  if (!flown.attitude_trace || flown.attitude_trace->samples.empty()) return answers->comparison;
-  const auto attitude =
-      compare_with_reference(*flown.attitude_trace, profile, tolerances, fraction_bits);
-  if (!attitude) return tl::unexpected(attitude.error());
-  return both(answers->comparison, attitude->comparison);
-}
-
 // Compares each output with the reference's. If all agree, compares the loop with the golden's rows
 // up to the horizon. NaN or infinity in an output that is finite in all rows fails at every tick,
 // also beyond the horizon.
@@ -133,7 +122,7 @@ Result<void> judge_ticks(const Case& the_case, const Flown& flown, const Referen
                                : reference.horizon_s;
   const std::size_t ticks = flown.trace.samples.size();
   result.compared = level;
-  auto comparison = compare_units(
+  auto comparison = compare_with_reference(
       flown, the_case.profile, tolerances_of(the_case, level, fraction_bits, ticks), fraction_bits);
   if (!comparison) return tl::unexpected(comparison.error());
   const bool answers_agree = comparison->agrees();

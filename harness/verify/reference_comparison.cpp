@@ -90,4 +90,16 @@ std::optional<NearDecision> first_near_decision(const ModuleUnderTest& subject, 
   return std::nullopt;
 }
 
+Result<Comparison> compare_with_reference(const Flown& flown, const std::string& profile,
+                                          const Tolerances& tolerances,
+                                          std::optional<int> fraction_bits) {
+  auto answers = compare_with_reference(flown.trace, profile, tolerances, fraction_bits);
+  if (!answers) return tl::unexpected(answers.error());
+  if (!flown.attitude_trace || flown.attitude_trace->samples.empty()) return answers->comparison;
+  const auto attitude =
+      compare_with_reference(*flown.attitude_trace, profile, tolerances, fraction_bits);
+  if (!attitude) return tl::unexpected(attitude.error());
+  return both(answers->comparison, attitude->comparison);
+}
+
 }  // namespace attest

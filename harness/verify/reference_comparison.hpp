@@ -10,6 +10,7 @@
 #include "harness/compare/compare.hpp"
 #include "harness/core/result.hpp"
 #include "harness/golden/margins.hpp"
+#include "harness/loop/flight.hpp"
 
 namespace attest {
 
@@ -37,6 +38,11 @@ struct ReferenceComparison {
 Result<ReferenceComparison> compare_with_reference(const Trace& flown, const std::string& profile,
                                                    const Tolerances& tolerances,
                                                    std::optional<int> fraction_bits = {});
+
+// The same of a flight, which has a trace of each of its units.
+Result<Comparison> compare_with_reference(const Flown& flown, const std::string& profile,
+                                          const Tolerances& tolerances,
+                                          std::optional<int> fraction_bits);
 
 // The first tick, up to `last_tick`, at which a port can make a decision of the law by rounding;
 // with `fraction_bits`, a port in fixed point. Empty if there is none, or if no margins are known

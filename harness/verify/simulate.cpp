@@ -5,6 +5,7 @@
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/fixed_step.hpp"
 #include "harness/verify/judge.hpp"
+#include "harness/verify/reference_comparison.hpp"
 
 namespace attest {
 
@@ -37,6 +38,23 @@ Result<SimulatedFlight> simulate_flight(const Case& the_case, FlightPlan plan, P
   }
   flight.flown = *std::move(flown);
   return flight;
+}
+
+Result<void> note_deviations(const Case& the_case, const Declarations& port,
+                             SimulatedFlight& flight) {
+  Flown flown = flight.flown;
+  for (Trace* trace : {&flown.trace, flown.attitude_trace ? &*flown.attitude_trace : nullptr}) {
+    if (trace) trace->present &= ~port.lacks.outputs;
+  }
+  const std::size_t ticks = flown.trace.samples.size();
+  if (ticks == 0) return {};
+  const auto compared = compare_with_reference(
+      flown, the_case.profile, tolerances_of(the_case, Level::numeric, port.fraction_bits, ticks),
+      port.fraction_bits);
+  if (!compared) return tl::unexpected(compared.error());
+  flight.result.first = compared->first;
+  flight.result.worst = compared->worst;
+  return {};
 }
 
 }  // namespace attest

@@ -17,4 +17,9 @@ struct SimulatedFlight {
 // cannot be set up.
 Result<SimulatedFlight> simulate_flight(const Case& the_case, FlightPlan plan, PortHost& host);
 
+// Notes the first output that deviates from the reference's for the same inputs, and the worst one,
+// in the result. The verdict stays.
+Result<void> note_deviations(const Case& the_case, const Declarations& port,
+                             SimulatedFlight& flight);
+
 }  // namespace attest

@@ -112,6 +112,19 @@ CHECK
   [ "$status" -eq 0 ]
 }
 
+@test "sim shows where a port deviates, and the flight of the reference" {
+  run "$ATTEST" sim hover --port fault:i-subtracted --html page.html
+  [ "$status" -eq 0 ]
+  has "outputs deviate from the reference's for the same inputs"
+  has "look first at the rate law"
+  grep -q 'roll (reference)' page.html
+  grep -q '"text":"first deviation: out/' page.html
+  run "$ATTEST" sim hover --port "lib:$STARTER" --html page.html
+  [ "$status" -eq 0 ]
+  lacks "deviate"
+  ! grep -q 'first deviation' page.html
+}
+
 @test "sim: a lost vehicle, a case that is no flight, a vehicle or plant there is not" {
   run "$ATTEST" sim hover --rate 250 --port "$flip" --out lost.csv
   [ "$status" -eq 1 ]

@@ -105,7 +105,7 @@ json plot_to_json(const Plot& plot) {
   grids.choose_ticks(plot.marks);
   json marks = json::array();
   for (const PlotMark& mark : plot.marks) {
-    marks.push_back({{"x", mark.x}, {"text", one_line(mark.text)}});
+    marks.push_back({{"x", mark.x}, {"text", one_line(mark.text)}, {"quiet", mark.is_quiet}});
   }
   json out = {
       {"title", one_line(plot.title)},       {"unit", one_line(plot.unit)},

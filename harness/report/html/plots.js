@@ -72,10 +72,10 @@
     context.globalAlpha = 1;
   };
 
-  const drawMark = (context, area, plot, {x, text}) => {
+  const drawMark = (context, area, plot, {x, text, quiet}, row) => {
     const at = Math.round(placeOf(plot, x)) + 0.5;
     if (at < area.x || at > area.x + area.w) return;
-    context.strokeStyle = context.fillStyle = colour('fail');
+    context.strokeStyle = context.fillStyle = colour(quiet ? 'quiet' : 'fail');
     context.lineWidth = 1;
     context.setLineDash([4, 3]);
     context.beginPath();
@@ -86,7 +86,7 @@
     context.font = '12px sans-serif';
     const isRight = at + context.measureText(text).width + 6 > area.x + area.w;
     context.textAlign = isRight ? 'right' : 'left';
-    context.fillText(text, at + (isRight ? -4 : 4), area.y + 12);
+    context.fillText(text, at + (isRight ? -4 : 4), area.y + 12 + 14 * row);
   };
 
   const underlay = ({band, marks}) => (context, area, plot) => {
@@ -95,7 +95,7 @@
     context.rect(area.x, area.y, area.w, area.h);
     context.clip();
     if (band) drawBand(context, plot, band);
-    for (const mark of marks) drawMark(context, area, plot, mark);
+    marks.forEach((mark, row) => drawMark(context, area, plot, mark, row % 4));
     context.restore();
   };
 

@@ -104,6 +104,39 @@ TEST(FlightPlots, TwoPlantsAreInOnePlotWithOneSetpoint) {
   EXPECT_NE(attitude.series[6].pattern, attitude.series[0].pattern);
 }
 
+TEST(FlightPlots, TheReferenceIsAThinLineAfterTheFlight) {
+  const SimulatedFlight flight{passed("flight", "hover", Rate::hz(250)), two_ticks()};
+  const auto document = flight_document({flight}, {}, {two_ticks(), {}});
+  const Plot& attitude = document.groups.front().plots.front();
+  ASSERT_EQ(attitude.series.size(), 9u);
+  EXPECT_EQ(attitude.series[6].name, "roll (reference)");
+  EXPECT_EQ(attitude.series[6].pattern, LinePattern::dotted);
+  EXPECT_EQ(document.replay.size(), 1u);  // the animation has the flight only
+}
+
+TEST(FlightMarks, AreTheEventsAndTheFirstDeviationInOrderOfTime) {
+  Case the_case;
+  the_case.flight.emplace();
+  the_case.flight->motor_failure = MotorFailure{2, {0.5, Span::In::seconds}};
+  const Step gust{0, 3, {25, Span::In::ticks}};
+  the_case.flight->wind_m_s = {gust, gust, Constant{0}};
+  SimulatedFlight flight{passed("flight", "hover", Rate::hz(250)), two_ticks()};
+  flight.flown.trace.samples[0].in.timestamp = 5'000'000;
+  flight.result.first = Deviation{};
+  flight.result.first->timestamp_us = 5'200'000;
+  flight.result.first->channel =
+      *find_channel(Module::mc_att_control, "out/mc_att_ctrl_status.roll_rate_integ");
+  const std::vector<PlotMark> marks = marks_of(the_case, flight);
+  ASSERT_EQ(marks.size(), 3u);  // a gust in two directions is one event
+  EXPECT_EQ(marks[0].text, "wind");
+  EXPECT_DOUBLE_EQ(marks[0].x, 0.1);
+  EXPECT_TRUE(marks[0].is_quiet);
+  EXPECT_EQ(marks[1].text, "first deviation: out/mc_att_ctrl_status.roll_rate_integ");
+  EXPECT_DOUBLE_EQ(marks[1].x, 0.2);
+  EXPECT_FALSE(marks[1].is_quiet);
+  EXPECT_EQ(marks[2].text, "motor 2 fails");
+}
+
 TEST(FlightPlots, TheReplayHasTheQuaternions) {
   const SimulatedFlight flight{passed("flight", "hover", Rate::hz(250)), two_ticks()};
   const auto replay = flight_document({flight}, {}).replay;
