@@ -38,6 +38,7 @@ struct HuntCommandOptions {
   std::uint64_t seed = 1;
   std::optional<double> steps, seconds;
   int jobs = 1;
+  bool fail_fast = false;
   std::string out, json, junit, html;
 };
 
@@ -197,6 +198,7 @@ Result<HuntPlan> make_hunt_plan(const HuntCommandOptions& options) {
   plan.hunt.seed = options.seed;
   const double steps = options.steps.value_or(options.seconds ? 1e15 : usual_steps);
   plan.hunt.least_steps = static_cast<std::size_t>(steps);
+  plan.hunt.fail_fast = options.fail_fast;
   plan.hunt.processes = options.jobs;
   plan.hunt.stop = interrupted;
   RunResult& run = plan.report.run;
@@ -329,6 +331,8 @@ void add_hunt(const CommandLine& line) {
       .group(option_group::strictness);
   add_budget(command, *options);
   add_jobs(command, options->jobs, "Number of worker processes; does not change the findings");
+  command.flag("--fail-fast", options->fail_fast, "End after the round that has the first finding")
+      .group(option_group::execution);
   add_timeout(command, options->host.timeout_s);
   add_hunt_reports(command, *options);
   command.examples(

@@ -63,6 +63,9 @@ class Hunt {
     do {
       if (auto done = round(); !done) return tl::unexpected(done.error());
       options_.on_round(run_.progress);
+      if (options_.fail_fast && run_.ended_early.empty() && !failures_.empty()) {
+        run_.ended_early = "at the first finding";
+      }
     } while (run_.progress.steps < options_.least_steps && !options_.is_over() &&
              run_.ended_early.empty());
     options_.on_end();

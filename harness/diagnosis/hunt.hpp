@@ -32,6 +32,7 @@ struct HuntOptions {
   std::uint64_t seed = 1;
   std::size_t least_steps = 1'000'000;  // the hunt ends after the round that reaches them
   std::function<bool()> is_over = [] { return false; };  // asked after a round, too
+  bool fail_fast = false;  // the hunt ends after the round of the first failing trial, too
   int processes = 1;
   // True: end soon. The round is not counted; findings of the rounds before it are made.
   std::function<bool()> stop = [] { return false; };

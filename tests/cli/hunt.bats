@@ -99,6 +99,18 @@ load common
   grep -q '"ended_early": "interrupted"' found.json
 }
 
+@test "--fail-fast ends after the round that has the first finding" {
+  run "$ATTEST" hunt --fail-fast --steps 1e12 --module rate_unit --port fault:cascade-d-reversed \
+    --json found.json
+  [ "$status" -eq 1 ]
+  has "ended early: at the first finding"
+  grep -q '"fault": "cascade-d-reversed"' found.json
+  grep -q '"trials": 1024' found.json
+  run "$ATTEST" hunt --fail-fast --steps 1000 --module rate_unit
+  [ "$status" -eq 0 ]
+  lacks "ended early"
+}
+
 @test "a port that crashes is a finding, and wrong options are errors" {
   run "$ATTEST" hunt --steps 1000 --port "lib:$PORTS/port_crash.so"
   [ "$status" -eq 1 ]
