@@ -13,6 +13,7 @@
 #include "harness/diagnosis/diagnose_run.hpp"
 #include "harness/diagnosis/hunt_job.hpp"
 #include "harness/diagnosis/hunt_shrink.hpp"
+#include "harness/diagnosis/hunt_silence.hpp"
 #include "harness/golden/reference.hpp"
 #include "harness/port/features.hpp"
 #include "harness/port/port.hpp"
@@ -34,10 +35,12 @@ constexpr std::size_t most_passing_trials = 8;
 constexpr std::size_t most_timeouts = 5;
 
 struct Failure {
-  std::size_t target;
+  std::size_t index;  // of the target
+  HuntTarget target;
   HuntInputs inputs;
   VectorResult result;
-  std::size_t same = 0;  // later trials that failed in the same way
+  std::size_t same = 0;           // later trials that failed in the same way
+  std::string silent_topic = {};  // that the port never publishes, if this is the failure
 };
 
 // What the port declares that it lacks; a group of cases that it does not support, too, if it is
@@ -52,7 +55,11 @@ Lacks lacks_of(const Declarations& port) {
 
 class Hunt {
  public:
-  Hunt(const HuntOptions& options, const HostOptions& host) : options_(options), host_(host) {
+  Hunt(const HuntOptions& options, const HostOptions& host)
+      : options_(options),
+        host_(host),
+        count_(kind_of(host.port).is_program ? trials_of_part_of_program : trials_of_part),
+        silences_(options.seed) {
     const Declarations& port = *host.said;
     for (const ModuleUnderTest& subject : options.subjects) {
       targets_.push_back({{subject, options.level, port.fixed_step, lacks_of(port)}, {}, {}, 0});
@@ -63,7 +70,7 @@ class Hunt {
     do {
       if (auto done = round(); !done) return tl::unexpected(done.error());
       options_.on_round(run_.progress);
-      if (options_.fail_fast && run_.ended_early.empty() && !failures_.empty()) {
+      if (options_.fail_fast && run_.ended_early.empty() && has_finding()) {
         run_.ended_early = "at the first finding";
       }
     } while (run_.progress.steps < options_.least_steps && !options_.is_over() &&
@@ -76,19 +83,26 @@ class Hunt {
  private:
   template <typename R>
   Result<std::vector<R>> results_of(const Jobs<R>& jobs) const;
+  bool has_finding() const { return !failures_.empty() || !silences_.found().empty(); }
   Result<void> round();
+  Result<std::vector<HuntTrials>> trials_of_round() const;
+  Result<void> check_steps(const std::vector<HuntTrials>& trials) const;
   void take(const HuntTrial& trial, const std::vector<std::size_t>& kept_before);
   void note_failure(std::size_t target, HuntInputs inputs, const VectorResult& result);
   Result<void> find();
   Result<HuntFinding> finding_of(const Failure& failure, const ShrunkCase& shrunk);
-  std::optional<Diagnosis> diagnosis_of(const std::vector<std::pair<std::string, VectorResult>>&);
+  Result<void> diagnose(const Failure& failure, const ShrunkCase& shrunk, HuntFinding& finding);
+  std::optional<Diagnosis> diagnosis_of(const HuntTarget& target,
+                                        const std::vector<std::pair<std::string, VectorResult>>&);
   void add(HuntFinding finding);
 
   const HuntOptions& options_;
   const HostOptions& host_;
+  const std::size_t count_;  // trials of a part
   std::vector<HuntedTarget> targets_;
   std::uint64_t next_ = 0;    // trial
   std::size_t timeouts_ = 0;  // trials that ended by one
+  HuntSilences silences_;
   std::vector<Failure> failures_;
   std::map<std::size_t, std::vector<HuntInputs>> passing_;  // by target
   HuntRun run_;
@@ -106,21 +120,25 @@ Result<std::vector<R>> Hunt::results_of(const Jobs<R>& jobs) const {
   return std::move(outcome.results);
 }
 
-Result<void> Hunt::round() {
-  const std::size_t count =
-      kind_of(host_.port).is_program ? trials_of_part_of_program : trials_of_part;
+Result<std::vector<HuntTrials>> Hunt::trials_of_round() const {
   Jobs<HuntTrials> jobs;
   for (std::size_t part = 0; part < parts_of_round; ++part) {
     jobs.push_back(
-        std::make_unique<TrialJob>(targets_, options_.seed, next_ + part * count, count, host_));
+        std::make_unique<TrialJob>(targets_, options_.seed, next_ + part * count_, count_, host_));
   }
-  const auto results = results_of(jobs);
+  return results_of(jobs);
+}
+
+Result<void> Hunt::round() {
+  auto results = trials_of_round();
+  while (results && silences_.take(*results, targets_)) results = trials_of_round();
   if (options_.stop()) {
     run_.ended_early = "interrupted";
     return {};
   }
   if (!results) return tl::unexpected(results.error());
-  next_ += parts_of_round * count;
+  if (auto stepped = check_steps(*results); !stepped) return stepped;
+  next_ += parts_of_round * count_;
   std::vector<std::size_t> kept_before;
   for (const HuntedTarget& target : targets_) kept_before.push_back(target.kept.size());
   for (const HuntTrials& trials : *results) {
@@ -128,6 +146,24 @@ Result<void> Hunt::round() {
   }
   if (timeouts_ >= most_timeouts) {
     run_.ended_early = fmt::format("the port did not answer in time in {} trials", timeouts_);
+  }
+  return {};
+}
+
+// Errors: a target was never tried, because the port lacks what each of its trials uses.
+Result<void> Hunt::check_steps(const std::vector<HuntTrials>& trials) const {
+  std::vector<std::size_t> made(targets_.size()), steps(targets_.size());
+  for (const HuntTrials& part : trials) {
+    for (const HuntTrial& trial : part) {
+      ++made[trial.number % targets_.size()];
+      steps[trial.number % targets_.size()] += trial.steps;
+    }
+  }
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    const ModuleUnderTest& subject = targets_[i].target.subject;
+    if (made[i] == 0 || steps[i] > 0) continue;
+    return fail(fmt::format("{} of {} cannot be hunted: each trial uses what the port lacks",
+                            name_of(subject.module), subject.profile));
   }
   return {};
 }
@@ -166,20 +202,24 @@ void Hunt::take(const HuntTrial& trial, const std::vector<std::size_t>& kept_bef
 void Hunt::note_failure(std::size_t target, HuntInputs inputs, const VectorResult& result) {
   std::size_t same = 0;
   for (Failure& failure : failures_) {
-    const Module module = targets_[failure.target].target.subject.module;
+    const Module module = failure.target.subject.module;
     const bool is_same_module = module == targets_[target].target.subject.module;
     if (!is_same_module || !fail_the_same_way(failure.result, result)) continue;
     ++failure.same;
     if (++same == most_same) return;
   }
-  failures_.push_back({target, std::move(inputs), result});
+  failures_.push_back({target, targets_[target].target, std::move(inputs), result});
 }
 
 Result<void> Hunt::find() {
+  for (const HuntSilence& silence : silences_.found()) {
+    const HuntedTarget& hunted = targets_[silence.target];
+    failures_.push_back({silence.target, only_topic(silence, hunted), silence.inputs,
+                         silence.failure, 0, std::string(topic_of(silence, hunted))});
+  }
   Jobs<ShrunkCase> jobs;
   for (const Failure& failure : failures_) {
-    jobs.push_back(
-        std::make_unique<ShrinkJob>(targets_[failure.target].target, failure.inputs, host_));
+    jobs.push_back(std::make_unique<ShrinkJob>(failure.target, failure.inputs, host_));
   }
   const auto shrunk = results_of(jobs);
   if (!shrunk) return tl::unexpected(shrunk.error());
@@ -216,19 +256,12 @@ Result<HuntFinding> Hunt::finding_of(const Failure& failure, const ShrunkCase& s
   finding.name = identifier(name_without_fault(finding.failure));
   if (shrunk.needs_others) return finding;
   finding.toml = shrunk.shrunk;
-  std::vector<std::pair<std::string, VectorResult>> vectors = {{shrunk.shrunk, shrunk.of_shrunk},
-                                                               {shrunk.whole, shrunk.of_whole}};
-  for (const HuntInputs& inputs : passing_[failure.target]) {
-    auto text = case_of(inputs, options_.level);
-    if (!text) return tl::unexpected(text.error());
-    VectorResult passed;
-    passed.profile = inputs.subject.profile;
-    passed.rate = inputs.rate;
-    vectors.emplace_back(*std::move(text), passed);
-  }
-  finding.diagnosis = diagnosis_of(vectors);
-  if (finding.diagnosis && !finding.diagnosis->suspects.empty()) {
-    finding.name = identifier(std::string(finding.diagnosis->suspects.front().fault->id));
+  if (failure.silent_topic.empty()) {
+    if (auto done = diagnose(failure, shrunk, finding); !done) return tl::unexpected(done.error());
+  } else {
+    finding.name = "never_publishes_" + failure.silent_topic;
+    finding.failure.reason = fmt::format(
+        "the port never publishes {}; its other outputs are judged", failure.silent_topic);
   }
   const auto parsed = parse_case_text(
       finding.toml,
@@ -242,9 +275,28 @@ Result<HuntFinding> Hunt::finding_of(const Failure& failure, const ShrunkCase& s
   return finding;
 }
 
+Result<void> Hunt::diagnose(const Failure& failure, const ShrunkCase& shrunk,
+                            HuntFinding& finding) {
+  std::vector<std::pair<std::string, VectorResult>> vectors = {{shrunk.shrunk, shrunk.of_shrunk},
+                                                               {shrunk.whole, shrunk.of_whole}};
+  for (const HuntInputs& inputs : passing_[failure.index]) {
+    auto text = case_of(inputs, options_.level);
+    if (!text) return tl::unexpected(text.error());
+    VectorResult passed;
+    passed.profile = inputs.subject.profile;
+    passed.rate = inputs.rate;
+    vectors.emplace_back(*std::move(text), passed);
+  }
+  finding.diagnosis = diagnosis_of(failure.target, vectors);
+  if (finding.diagnosis && !finding.diagnosis->suspects.empty()) {
+    finding.name = identifier(std::string(finding.diagnosis->suspects.front().fault->id));
+  }
+  return {};
+}
+
 // `vectors`: texts of cases with their results.
 std::optional<Diagnosis> Hunt::diagnosis_of(
-    const std::vector<std::pair<std::string, VectorResult>>& vectors) {
+    const HuntTarget& target, const std::vector<std::pair<std::string, VectorResult>>& vectors) {
   RunResult run;
   run.level = options_.level;
   run.lacks = host_.said->lacks;
@@ -262,7 +314,9 @@ std::optional<Diagnosis> Hunt::diagnosis_of(
   DiagnosisOptions options;
   options.processes = options_.processes;
   options.stop = options_.stop;
-  return diagnose_run(run, cases, host_, options);
+  HostOptions host = host_;
+  host.said->lacks.outputs = target.lacks.outputs;
+  return diagnose_run(run, cases, host, options);
 }
 
 // Findings of one cause are one finding, with the shortest case.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "harness/diagnosis/hunt_lacks.hpp"
 #include "harness/diagnosis/hunt_trial.hpp"
 #include "harness/diagnosis/hunt_values.hpp"
 #include "harness/diagnosis/hunt_writer.hpp"
@@ -217,6 +218,8 @@ HuntInputs make_trial(const HuntTarget& target, std::uint64_t seed, std::uint64_
     }
   }
   limit_step(target, inputs);
+  make_orderly(target.lacks, inputs);
+  leave_out_lacking(target.lacks, inputs);
   make_orderly(target.lacks, inputs);
   return inputs;
 }

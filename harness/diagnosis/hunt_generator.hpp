@@ -17,6 +17,11 @@ struct HuntTarget {
   Lacks lacks;                     // of the port
 };
 
+// Whether each trial needs a process of its own.
+inline bool makes_one_instance(const HuntTarget& target) {
+  return contains(target.lacks.features, Feature::instances);
+}
+
 // A function of the arguments alone. `kept`: inputs of earlier trials of this target; may be empty.
 HuntInputs make_trial(const HuntTarget& target, std::uint64_t seed, std::uint64_t trial,
                       std::span<const HuntInputs> kept);

@@ -25,10 +25,9 @@ json numbers_of(const HuntFeatures& features) {
 }
 
 json to_json(const HuntTrial& trial) {
-  json out = {{"number", trial.number},
-              {"steps", trial.steps},
-              {"deviation", trial.deviation},
-              {"agrees", trial.agrees},
+  json out = {{"number", trial.number},          {"steps", trial.steps},
+              {"deviation", trial.deviation},    {"agrees", trial.agrees},
+              {"due", trial.due.to_ulong()},     {"published", trial.published.to_ulong()},
               {"meets", numbers_of(trial.meets)}};
   if (trial.failure) out["failure"] = to_json(*trial.failure);
   return out;
@@ -40,6 +39,8 @@ HuntTrial trial_from(const json& in) {
   in.at("steps").get_to(trial.steps);
   in.at("deviation").get_to(trial.deviation);
   in.at("agrees").get_to(trial.agrees);
+  trial.due = in.at("due").get<unsigned long>();
+  trial.published = in.at("published").get<unsigned long>();
   for (const json& feature : in.at("meets")) trial.meets.set(feature.get<std::size_t>());
   if (in.contains("failure")) trial.failure = vector_result_from_json(in.at("failure")).value();
   return trial;
@@ -89,13 +90,14 @@ Result<HuntTrials> TrialJob::run(std::size_t) {
     const HuntedTarget& hunted = targets_[number % targets_.size()];
     if (auto ready = ensure_host(host, options_); !ready) return tl::unexpected(ready.error());
     const HuntInputs inputs = make_trial(hunted.target, seed_, number, hunted.kept);
-    auto trial = judge_trial(inputs, hunted.target.lacks, *host, hunted.target.level);
+    auto trial = judge_trial(inputs, hunted.target, *host);
     if (!trial) return tl::unexpected(trial.error());
     const bool hangs = trial->failure && trial->failure->verdict == Verdict::timeout;
     trial->number = number;
     trial->meets &= ~hunted.met;
     trials.push_back(*std::move(trial));
     if (hangs) break;  // each further trial may cost the time limit
+    if (makes_one_instance(hunted.target)) host.reset();
   }
   return trials;
 }
@@ -126,7 +128,7 @@ Result<ShrunkCase> ShrinkJob::run(std::size_t) {
   ShrunkCase found;
   std::unique_ptr<PortHost> host;
   if (auto ready = ensure_host(host, options_); !ready) return tl::unexpected(ready.error());
-  auto trial = judge_trial(inputs_, target_.lacks, *host, target_.level);
+  auto trial = judge_trial(inputs_, target_, *host);
   if (!trial) return tl::unexpected(trial.error());
   host.reset();  // one process of the port at a time
   found.needs_others = !trial->failure;

@@ -52,7 +52,8 @@ class Shrinker {
       error_ = ready.error();
       return false;
     }
-    auto trial = judge_trial(candidate, target_.lacks, *host_, target_.level);
+    auto trial = judge_trial(candidate, target_, *host_);
+    if (makes_one_instance(target_)) host_.reset();
     if (!trial) {
       error_ = trial.error();
       return false;

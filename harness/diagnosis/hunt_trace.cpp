@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "harness/golden/reference.hpp"
+#include "harness/trace/output_topics.hpp"
 
 namespace attest {
 namespace {
@@ -43,6 +44,17 @@ std::size_t pattern_of(std::uint32_t updated, const std::vector<const Channel*>&
 
 }  // namespace
 
+HuntTopicSet published_in(const Trace& trace) {
+  const auto topics = output_topics(module_of(trace.present));
+  HuntTopicSet published;
+  for (std::size_t i = 0; i < topics.size(); ++i) {
+    const Channel& flag = channels()[topics[i].published];
+    published[i] = std::ranges::any_of(
+        trace.samples, [&](const Sample& sample) { return is_published(flag, sample); });
+  }
+  return published;
+}
+
 HuntTrace::HuntTrace(const HuntInputs& inputs, HuntFeatures* meets)
     : inputs_(inputs), meets_(meets), present_(channels_of(inputs.subject.module)) {
   for (std::size_t i = 0; i < channels().size(); ++i) {
@@ -58,6 +70,7 @@ Result<void> HuntTrace::rewind() {
   tick_ = quiet_ = step_ = change_ = 0;
   period_ = 0;
   held_ = Sample();
+  published_.reset();
   is_finished_ = false;
   return {};
 }
@@ -136,8 +149,19 @@ Result<void> HuntTrace::next_part(std::size_t most, Trace& part) {
   subject.part = {first, is_finished_};
   if (const auto fault = reference_->drive(subject, part))
     return fail("the reference: " + fault->what);
+  published_ |= published_in(part);
   if (meets_ != nullptr) note(part);
   return {};
+}
+
+Trace inputs_of(const HuntInputs& inputs) {
+  HuntInputs without_quiet = inputs;
+  for (HuntTick& tick : without_quiet.ticks) tick.quiet = 0;
+  HuntTrace parts(without_quiet);
+  Trace trace;
+  trace.present = parts.present();
+  while (parts.tick_ < without_quiet.ticks.size()) parts.add_tick(trace);
+  return trace;
 }
 
 Result<Trace> whole_trace_of(const HuntInputs& inputs) {

@@ -20,6 +20,10 @@ namespace attest {
 inline constexpr std::size_t feature_limit = 4096;
 using HuntFeatures = std::bitset<feature_limit>;
 
+// Output topics of a module, by their index in output_topics().
+using HuntTopicSet = std::bitset<8>;
+HuntTopicSet published_in(const Trace& trace);
+
 class HuntTrace final : public TraceParts {
  public:
   // Without `meets`, only the outputs are made. REQUIRES: `inputs` outlives this.
@@ -31,7 +35,11 @@ class HuntTrace final : public TraceParts {
   Result<void> next_part(std::size_t most, Trace& part) override;
   Result<void> rewind() override;
 
+  // The topics that the reference has published so far.
+  const HuntTopicSet& published() const { return published_; }
+
  private:
+  friend Trace inputs_of(const HuntInputs& inputs);
   void add_tick(Trace& part);
   void note(const Trace& part);
 
@@ -47,8 +55,12 @@ class HuntTrace final : public TraceParts {
   std::int64_t period_ = 0;
   std::size_t change_ = 0;
   Sample held_;
+  HuntTopicSet published_;
   bool is_finished_ = false;
 };
+
+// The ticks without the quiet ones, without outputs.
+Trace inputs_of(const HuntInputs& inputs);
 
 // All ticks, with the outputs of the reference.
 Result<Trace> whole_trace_of(const HuntInputs& inputs);

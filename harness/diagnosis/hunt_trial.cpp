@@ -5,10 +5,10 @@
 #include <map>
 #include <tuple>
 
+#include "harness/diagnosis/hunt_lacks.hpp"
 #include "harness/diagnosis/hunt_values.hpp"
 #include "harness/golden/reference.hpp"
 #include "harness/port/profiles.hpp"
-#include "harness/verify/declared_lacks.hpp"
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/reference_comparison.hpp"
 
@@ -113,11 +113,44 @@ double deviation_of(const VectorResult& result) {
   return result.tightest && result.tightest->ratio > 0 ? 1 / result.tightest->ratio : 0;
 }
 
-bool uses_lacking(const HuntInputs& inputs, const Lacks& lacks) {
-  if (lacks.features.none()) return false;
-  const auto trace = whole_trace_of(inputs);
-  return !trace || lacking_features(lacks, *trace, inputs.subject).any();
-}
+// The port, as one that lacks the outputs of the target. Notes which topics it publishes.
+class HuntedPort final : public PortHost {
+ public:
+  HuntedPort(PortHost& host, const HuntTarget& target) : host_(host) {
+    const Declarations& port = host.declarations();
+    if (port.lacks.outputs == target.lacks.outputs) return;
+    said_ = port;
+    said_->lacks.outputs = target.lacks.outputs;
+  }
+
+  const Declarations& declarations() const override {
+    return said_ ? *said_ : host_.declarations();
+  }
+  std::optional<PortFault> drive(const ModuleUnderTest& subject, Trace& trace) override {
+    auto fault = host_.drive(subject, trace);
+    published_ |= published_in(trace);
+    has_fault_ = has_fault_ || fault;
+    return fault;
+  }
+  Result<Flown> fly(const FlightPlan& plan) override { return host_.fly(plan); }
+  Result<LiveFlight> fly_live(const LivePlan& plan, const LiveWatch& watch) override {
+    return host_.fly_live(plan, watch);
+  }
+  Result<StepTimes> time_steps(const ModuleUnderTest& subject, const Trace& inputs,
+                               bool with_stack) override {
+    return host_.time_steps(subject, inputs, with_stack);
+  }
+  bool supports(const std::string& profile) override { return host_.supports(profile); }
+
+  const HuntTopicSet& published() const { return published_; }
+  bool has_fault() const { return has_fault_; }
+
+ private:
+  PortHost& host_;
+  std::optional<Declarations> said_;
+  HuntTopicSet published_;
+  bool has_fault_ = false;
+};
 
 }  // namespace
 
@@ -152,14 +185,22 @@ void make_orderly(const Lacks& lacks, HuntInputs& inputs) {
   });
 }
 
-Result<HuntTrial> judge_trial(const HuntInputs& inputs, const Lacks& lacks, PortHost& host,
-                              Level level) {
+Result<HuntTrial> judge_trial(const HuntInputs& inputs, const HuntTarget& target, PortHost& host) {
   HuntTrial trial;
-  if (uses_lacking(inputs, lacks)) return trial;
+  const Level level = target.level;
+  if (uses_lacking(target.lacks, inputs)) return trial;
   HuntTrace parts(inputs, &trial.meets);
-  auto result = evaluate_parts(parts, inputs.subject, host, Tolerances(level));
+  HuntedPort port(host, target);
+  auto result = evaluate_parts(parts, inputs.subject, port, Tolerances(level));
   if (!result) return tl::unexpected(result.error());
   trial.steps = inputs.steps();
+  if (!port.has_fault()) {
+    trial.due = parts.published();
+    trial.published = port.published();
+  }
+  const bool has_outputs =
+      (parts.present() & channels_of(inputs.subject.module, "out/") & ~target.lacks.outputs).any();
+  if (!has_outputs && !port.has_fault()) return trial;
   trial.deviation = level == Level::exact ? 0 : deviation_of(*result);
   trial.agrees = result->verdict == Verdict::pass;
   if (!fails_a_run(result->verdict)) return trial;

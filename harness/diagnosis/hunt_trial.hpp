@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "harness/compare/tolerance.hpp"
+#include "harness/diagnosis/hunt_generator.hpp"
 #include "harness/diagnosis/hunt_trace.hpp"
 #include "harness/host/port_host.hpp"
 #include "harness/verify/verdict.hpp"
@@ -20,6 +20,8 @@ struct HuntTrial {
   // least 1.
   double deviation = 0;
   bool agrees = false;  // all outputs do; false if a deviation did not count
+  // Topics that the reference publishes, and the port. Empty if the port did not make all steps.
+  HuntTopicSet due, published;
   HuntFeatures meets;
   std::optional<VectorResult> failure;  // the port is wrong
 };
@@ -33,8 +35,8 @@ void make_orderly(const Lacks& lacks, HuntInputs& inputs);
 // Gives the inputs to a fresh instance, and compares it with the reference. A deviation at the
 // level numeric counts only if rounding cannot explain it: up to its tick, the reference in double
 // precision stays well within the tolerances, and no decision of the law is nearer than its margin.
-// Inputs with a feature of `lacks` are not judged. Errors: the reference fails.
-Result<HuntTrial> judge_trial(const HuntInputs& inputs, const Lacks& lacks, PortHost& host,
-                              Level level);
+// Inputs with a feature of `target.lacks` are not judged, nor are its outputs. Errors: the
+// reference fails.
+Result<HuntTrial> judge_trial(const HuntInputs& inputs, const HuntTarget& target, PortHost& host);
 
 }  // namespace attest

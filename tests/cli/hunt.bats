@@ -111,6 +111,23 @@ load common
   lacks "ended early"
 }
 
+@test "a topic that is never published is one finding" {
+  run "$ATTEST" hunt --steps 1000 --port "lib:$PORTS/port_silent_topic.so"
+  [ "$status" -eq 1 ]
+  has "FAIL 1 finding "
+  has "the port never publishes mc_att_ctrl_status; its other outputs are judged"
+  run "$ATTEST" hunt --steps 1000 --port "lib:$PORTS/port_silent.so"
+  [ "$status" -eq 1 ]
+  has "FAIL 3 findings "
+  has "the port never publishes actuator_controls_0"
+}
+
+@test "a port is hunted for what it has" {
+  run "$ATTEST" hunt --steps 100000 --port "lib:$PORTS/port_lacks.so"
+  [ "$status" -eq 0 ]
+  has "PASS 0 findings"
+}
+
 @test "a port that crashes is a finding, and wrong options are errors" {
   run "$ATTEST" hunt --steps 1000 --port "lib:$PORTS/port_crash.so"
   [ "$status" -eq 1 ]
