@@ -214,8 +214,9 @@ void Hunt::note_failure(std::size_t target, HuntInputs inputs, const VectorResul
 Result<void> Hunt::find() {
   for (const HuntSilence& silence : silences_.found()) {
     const HuntedTarget& hunted = targets_[silence.target];
-    failures_.push_back({silence.target, only_topic(silence, hunted), silence.inputs,
-                         silence.failure, 0, std::string(topic_of(silence, hunted))});
+    failures_.insert(failures_.begin(),
+                     {silence.target, only_topic(silence, hunted), silence.inputs, silence.failure,
+                      0, std::string(topic_of(silence, hunted))});
   }
   Jobs<ShrunkCase> jobs;
   for (const Failure& failure : failures_) {

@@ -1,5 +1,6 @@
 #include "harness/diagnosis/hunt_lacks.hpp"
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -80,6 +81,7 @@ class LeaveOut {
       for (const ParameterChange& change : original_.parameters) {
         if (change.name == name) candidate.parameters.push_back(change);
       }
+      std::ranges::stable_sort(candidate.parameters, {}, &ParameterChange::tick);
       if (keeps(candidate)) continue;
       std::erase_if(candidate.parameters, [&](const ParameterChange& change) {
         return change.name == name && change.tick > 0;

@@ -1,0 +1,222 @@
+#include "harness/diagnosis/hunt.hpp"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/port/profiles.hpp"
+#include "harness/trace/output_topics.hpp"
+#include "tests/harness/diagnosis/hunted.hpp"
+
+namespace attest {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::UnorderedElementsAre;
+
+// One round, unless `least_steps` is changed.
+HuntOptions hunted(std::vector<ModuleUnderTest> subjects, std::uint64_t seed = 1) {
+  HuntOptions options;
+  options.subjects = std::move(subjects);
+  options.seed = seed;
+  options.least_steps = 1;
+  return options;
+}
+
+HuntOptions of_rate_unit(std::uint64_t seed = 1) {
+  return hunted({{"px4-v1.16.0", Module::rate_unit}}, seed);
+}
+
+HuntRun found_by(const HuntOptions& options, const HostOptions& host) {
+  auto found = hunt(options, host);
+  EXPECT_TRUE(found) << found.error().to_string();
+  return found ? *std::move(found) : HuntRun();
+}
+
+std::vector<std::string> names_of(const HuntRun& run) {
+  std::vector<std::string> names;
+  for (const HuntFinding& finding : run.findings) names.push_back(finding.name);
+  return names;
+}
+
+std::optional<PortFault> unchanged(const ModuleUnderTest&, Trace&) { return std::nullopt; }
+
+// ---- findings -----------------------------------------------------------------------------------
+
+TEST(Hunt, TheReferenceHasNoFinding) {
+  HuntOptions options = of_rate_unit();
+  options.level = Level::exact;
+  const HuntRun run = found_by(options, changed_host(unchanged));
+  EXPECT_THAT(run.findings, IsEmpty());
+  EXPECT_THAT(run.ended_early, IsEmpty());
+  EXPECT_EQ(run.progress.trials, 128u);
+  EXPECT_GT(run.progress.steps, 5'000u);
+}
+
+TEST(Hunt, RoundingIsNoFinding) {
+  std::vector<ModuleUnderTest> subjects;
+  for (const char* profile : {"px4-v1.5.5", "px4-v1.16.0"}) {
+    for (const ModuleInfo& info : modules()) {
+      const bool has_it = contains(find_profile(profile)->modules, info.module);
+      if (has_it && info.module != Module::mixer) subjects.push_back({profile, info.module});
+    }
+  }
+  HostOptions host = changed_host(unchanged, Precision::binary64);
+  host.port = "builtin";  // more trials
+  const HuntRun run = found_by(hunted(subjects), host);
+  EXPECT_THAT(names_of(run), IsEmpty());
+  EXPECT_GT(run.progress.steps, 5'000u);
+}
+
+TEST(Hunt, FindingsOfOneCauseAreOneFinding) {
+  const HuntRun run =
+      found_by(hunted({{"px4-v1.16.0", Module::rate_unit}, {"px4-v1.15.4", Module::rate_unit}}),
+               fault_host("cascade-d-reversed"));
+  ASSERT_THAT(names_of(run), ElementsAre("cascade_d_reversed"));
+  const HuntFinding& finding = run.findings.front();
+  EXPECT_GT(finding.trials, 3u);
+  EXPECT_LT(finding.trace.samples.size(), 8u);
+  EXPECT_EQ(finding.failure.verdict, Verdict::fail);
+  EXPECT_THAT(finding.toml, HasSubstr("Fill in"));
+}
+
+TEST(Hunt, TwoMistakesAreTwoFindings) {
+  const HuntRun run =
+      found_by(hunted({{"px4-v1.16.0", Module::rate_unit}, {"px4-v1.16.0", Module::attitude_unit}}),
+               fault_host("cascade-m-not-canonical+cascade-d-reversed"));
+  EXPECT_THAT(names_of(run), UnorderedElementsAre("cascade_d_reversed", "cascade_m_not_canonical"));
+}
+
+TEST(Hunt, TheSeedChoosesTheTrials) {
+  const HostOptions host = fault_host("cascade-d-reversed");
+  const HuntRun once = found_by(of_rate_unit(1), host), again = found_by(of_rate_unit(1), host),
+                other = found_by(of_rate_unit(2), host);
+  EXPECT_EQ(once.progress.steps, again.progress.steps);
+  EXPECT_NE(once.progress.steps, other.progress.steps);
+  ASSERT_THAT(once.findings, SizeIs(1));
+  ASSERT_THAT(again.findings, SizeIs(1));
+  EXPECT_EQ(once.findings[0].toml, again.findings[0].toml);
+  EXPECT_EQ(once.findings[0].trials, again.findings[0].trials);
+}
+
+// ---- the end ------------------------------------------------------------------------------------
+
+TEST(Hunt, EndsAfterTheRoundThatReachesTheSteps) {
+  HuntOptions options = of_rate_unit();
+  std::vector<std::size_t> steps;
+  options.on_round = [&](const HuntProgress& progress) { steps.push_back(progress.steps); };
+  options.least_steps = 40'000;
+  const HuntRun run = found_by(options, changed_host(unchanged));
+  ASSERT_FALSE(steps.empty());
+  EXPECT_GE(steps.back(), options.least_steps);
+  steps.pop_back();
+  for (const std::size_t before : steps) EXPECT_LT(before, options.least_steps);
+  EXPECT_EQ(run.progress.trials, 128 * (steps.size() + 1));
+}
+
+TEST(Hunt, EndsWhenThePortHangsAgainAndAgain) {
+  HuntOptions options = of_rate_unit();
+  options.least_steps = 1'000'000'000;
+  int rounds = 0;
+  options.is_over = [&] { return ++rounds == 20; };
+  const HuntRun run = found_by(options, changed_host([](const ModuleUnderTest&, Trace&) {
+                                 return PortFault{PortFault::Kind::timeout, 0, "no answer"};
+                               }));
+  EXPECT_LT(rounds, 20);
+  EXPECT_THAT(run.ended_early, HasSubstr("did not answer in time in 8 trials"));
+  ASSERT_THAT(run.findings, SizeIs(1));
+  EXPECT_EQ(run.findings[0].failure.verdict, Verdict::timeout);
+}
+
+TEST(Hunt, AnInterruptKeepsWhatWasFound) {
+  HuntOptions options = of_rate_unit();
+  options.least_steps = 1'000'000'000;
+  bool is_interrupted = false;
+  options.on_round = [&](const HuntProgress&) { is_interrupted = true; };
+  options.stop = [&] { return is_interrupted; };
+  options.on_end = [&] { is_interrupted = false; };
+  const HuntRun run = found_by(options, fault_host("cascade-d-reversed"));
+  EXPECT_EQ(run.ended_early, "interrupted");
+  EXPECT_THAT(names_of(run), ElementsAre("cascade_d_reversed"));
+  EXPECT_EQ(run.progress.trials, 128u);
+}
+
+TEST(Hunt, FailFastEndsAtTheFirstFinding) {
+  HuntOptions options = of_rate_unit();
+  options.least_steps = 40'000;
+  options.fail_fast = true;
+  const HuntRun run = found_by(options, fault_host("cascade-d-reversed"));
+  EXPECT_EQ(run.progress.trials, 128u);
+  EXPECT_EQ(run.ended_early, "at the first finding");
+  EXPECT_THAT(names_of(run), ElementsAre("cascade_d_reversed"));
+  const HuntRun right = found_by(options, changed_host(unchanged));
+  EXPECT_THAT(right.ended_early, IsEmpty());
+  EXPECT_GE(right.progress.steps, options.least_steps);
+}
+
+// ---- silent topics ------------------------------------------------------------------------------
+
+// Publishes no topic of these names.
+ChangeAnswer without(std::vector<std::string> silent) {
+  return [silent](const ModuleUnderTest& subject, Trace& trace) -> std::optional<PortFault> {
+    for (const OutputTopic& topic : output_topics(subject.module)) {
+      if (std::ranges::find(silent, topic.name) == silent.end()) continue;
+      for (Sample& sample : trace.samples) set_value(channels()[topic.published], sample, 0);
+    }
+    return std::nullopt;
+  };
+}
+
+TEST(Hunt, ATopicThatIsNeverPublishedIsOneFinding) {
+  const HuntRun run = found_by(of_rate_unit(), changed_host(without({"rate_ctrl_status"})));
+  ASSERT_THAT(names_of(run), ElementsAre("never_publishes_rate_ctrl_status"));
+  EXPECT_EQ(run.findings[0].failure.reason,
+            "the port never publishes rate_ctrl_status; its other outputs are judged");
+  EXPECT_EQ(run.progress.trials, 128u);
+}
+
+TEST(Hunt, ASilentTopicHidesNoOtherMistake) {
+  const HuntRun run = found_by(of_rate_unit(), changed_host([](const ModuleUnderTest& s, Trace& t) {
+                                 for (Sample& sample : t.samples)
+                                   sample.rate_out.vehicle_torque_setpoint.xyz[1] *= 1.1F;
+                                 return without({"rate_ctrl_status"})(s, t);
+                               }));
+  ASSERT_THAT(run.findings, SizeIs(testing::Ge(2u)));
+  EXPECT_EQ(run.findings[0].name, "never_publishes_rate_ctrl_status");
+  EXPECT_THAT(run.findings[1].name, Not(HasSubstr("rate_ctrl_status")));
+}
+
+TEST(Hunt, APortThatPublishesNothingHasAFindingForEachTopic) {
+  const HuntRun run = found_by(
+      of_rate_unit(), changed_host(without({"vehicle_torque_setpoint", "vehicle_thrust_setpoint",
+                                            "rate_ctrl_status", "vehicle_rates_setpoint"})));
+  EXPECT_EQ(run.findings.size(), output_topics(Module::rate_unit).size());
+  for (const std::string& name : names_of(run)) EXPECT_THAT(name, HasSubstr("never_publishes_"));
+}
+
+// The second round takes the finding back.
+TEST(Hunt, ATopicThatIsPublishedLaterIsJudgedAgain) {
+  std::size_t traces = 0;
+  HuntOptions options = of_rate_unit();
+  options.least_steps = 1'000'000'000;
+  int rounds = 0;
+  options.is_over = [&] { return ++rounds == 3; };
+  const HuntRun run =
+      found_by(options, changed_host([&](const ModuleUnderTest& s, Trace& t) {
+                 return ++traces < 300 ? without({"rate_ctrl_status"})(s, t) : std::nullopt;
+               }));
+  EXPECT_THAT(names_of(run), IsEmpty());
+}
+
+TEST(Hunt, WhatThePortLacksIsNotJudged) {
+  HostOptions host = changed_host(without({"rate_ctrl_status"}));
+  host.said->lacks = *Lacks::parse(std::vector<std::string>{"rate_ctrl_status"});
+  EXPECT_THAT(found_by(of_rate_unit(), host).findings, IsEmpty());
+}
+
+}  // namespace
+}  // namespace attest
