@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Checks the suite from outside: wrong ports must fail, right ones of other styles must pass.
 
-    check.py --attest PATH [--only NAME]... [--every N] [--jobs N] [--core]
+    check.py --attest PATH [--only NAME]... [--every N] [--jobs N] [--core | --hunt STEPS]
 
-A style is a folder here with a right port (c_starter, c_cascade: starters of the repository) and
-patches, each a porting mistake. Every patch is applied to a copy of its port, compiled, and run
+A style is a folder here with a right port (c_starter, c_cascade, c_law: starters of the repository)
+and patches, each a porting mistake. Every patch is applied to a copy of its port, compiled, and run
 through the suite, flights last. The text at the head of a patch says what the mistake is. A line
 `Passes: why` there marks a mistake that no case detects yet. It is an error if a case detects a
 marked mistake.
@@ -12,8 +12,8 @@ marked mistake.
 Prints a table. Exits 1 if an unmarked mistake passes, a marked one fails, or a right port fails; 2
 if a patch does not apply, also one that is not judged, or a port does not compile.
 
---core judges by the core of the suite only (`attest run --core`). It need not catch all mistakes;
-the last line says how many it catches.
+--core judges by the core of the suite only (`attest run --core`), --hunt by a search of so many
+steps (`attest hunt`). They need not catch all mistakes; the last line says how many they catch.
 """
 
 import argparse
@@ -37,14 +37,19 @@ CONTROLLER = HERE.parents[2] / "controller"
 STYLES = {
     "c_starter": CONTROLLER / "starters" / "c",
     "c_cascade": CONTROLLER / "starters" / "c_cascade",
+    "c_law": CONTROLLER / "starters" / "c_law",
     "cpp_style": HERE / "cpp_style",
     "simulink_style": HERE / "simulink_style",
 }
 SOURCES = (".c", ".cpp", ".h", ".hpp")
 # Flights take most of the time and show few mistakes that the other groups do not.
 FLIGHTS = ("flight", "flight_timing")
-FLIGHT_RATES = {"c_cascade": "250:1000"}
-OTHER_FLIGHT_RATES = "333"
+FLIGHT_RATES = {
+    "c_starter": "333",
+    "c_cascade": "250:1000",
+    "cpp_style": "333",
+    "simulink_style": "333",
+}
 # Mistakes give wrong numbers, never slow steps: the limit allows for a busy machine.
 TIMEOUT_S = 300
 COMPILES_AT_ONCE = threading.Semaphore(2)
@@ -149,26 +154,45 @@ def groups(attest: pathlib.Path) -> list[str]:
     return sorted(names - {"mixer", "battery_status"})
 
 
-def first_failure(attest: pathlib.Path, library: pathlib.Path, selection: list[str]) -> str | None:
-    """The id of the first case that `attest run` finds wrong, None if it passes."""
+def report_of_failure(
+    attest: pathlib.Path, verb: str, library: pathlib.Path, options: list
+) -> dict | None:
+    """The report of `attest run` or `attest hunt` up to the first failure, None if it passes."""
     report = library.with_name("report.json")
-    command = [attest, "-q", "run", "--port", f"lib:{library}", "--fail-fast", "--no-diagnose"]
-    command += ["--timeout", str(TIMEOUT_S), "--json", report, *selection]
+    command = [attest, "-q", verb, "--port", f"lib:{library}", "--fail-fast"]
+    command += ["--timeout", str(TIMEOUT_S), "--json", report, *options]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode == 0:
         return None
     if done.returncode != 1:
-        raise Broken(f"attest run exited with {done.returncode}:\n{done.stdout}{done.stderr}")
-    results = json.loads(report.read_text())["results"]
-    failed = [r["id"] for r in results if r["verdict"] in ("fail", "non-finite")]
+        raise Broken(f"attest {verb} exited with {done.returncode}:\n{done.stdout}{done.stderr}")
+    return json.loads(report.read_text())
+
+
+def first_failure(attest: pathlib.Path, library: pathlib.Path, selection: list[str]) -> str | None:
+    """The id of the first case that `attest run` finds wrong, None if it passes."""
+    report = report_of_failure(attest, "run", library, ["--no-diagnose", *selection])
+    if not report:
+        return None
+    failed = [r["id"] for r in report["results"] if r["verdict"] in ("fail", "non-finite")]
     if not failed:
-        raise Broken(f"attest run failed for another reason than its outputs:\n{done.stdout}")
+        verdicts = sorted({r["verdict"] for r in report["results"]})
+        raise Broken(f"attest run failed for another reason than its outputs: {verdicts}")
     return failed[0]
 
 
-def judge(
-    attest: pathlib.Path, all_groups: list[str], core: bool, candidate: Candidate
-) -> Judged:
+def first_finding(attest: pathlib.Path, library: pathlib.Path, steps: int) -> str | None:
+    """The id of a case that `attest hunt` makes of its first finding, None without a finding."""
+    # check.py judges several ports at once.
+    report = report_of_failure(attest, "hunt", library, ["--steps", str(steps), "--jobs", "1"])
+    if not report:
+        return None
+    if not report["findings"]:
+        raise Broken("attest hunt failed without a finding")
+    return report["findings"][0]["result"]["id"]
+
+
+def judge(args: argparse.Namespace, all_groups: list[str], candidate: Candidate) -> Judged:
     def selection(flights: bool) -> list[str]:
         chosen = [group for group in all_groups if (group in FLIGHTS) == flights]
         return [word for group in chosen for word in ("--group", group)]
@@ -176,11 +200,14 @@ def judge(
     try:
         with tempfile.TemporaryDirectory() as name:
             library = build(candidate, pathlib.Path(name))
-            open_loop = ["--core"] if core else selection(flights=False)
-            caught_by = first_failure(attest, library, open_loop)
-            if not caught_by and not candidate.passes and not core:
-                rates = ["--rate", FLIGHT_RATES.get(candidate.style, OTHER_FLIGHT_RATES)]
-                caught_by = first_failure(attest, library, selection(flights=True) + rates)
+            if args.hunt:
+                return Judged(candidate, first_finding(args.attest, library, args.hunt), None)
+            open_loop = ["--core"] if args.core else selection(flights=False)
+            caught_by = first_failure(args.attest, library, open_loop)
+            rates = FLIGHT_RATES.get(candidate.style)
+            if rates and not caught_by and not candidate.passes and not args.core:
+                flights = [*selection(flights=True), "--rate", rates]
+                caught_by = first_failure(args.attest, library, flights)
     except Broken as error:
         return Judged(candidate, None, str(error))
     return Judged(candidate, caught_by, None)
@@ -192,7 +219,9 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--only", action="append", default=[], metavar="NAME")
     parser.add_argument("--every", type=int, default=1, metavar="N", help="one mistake in N")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    parser.add_argument("--core", action="store_true", help="judge by the core only")
+    by = parser.add_mutually_exclusive_group()
+    by.add_argument("--core", action="store_true", help="judge by the core only")
+    by.add_argument("--hunt", type=int, metavar="STEPS", help="judge by `attest hunt` instead")
     args = parser.parse_args()
     if not args.attest:
         parser.error("no attest in PATH: say --attest PATH")
@@ -205,6 +234,8 @@ def main() -> int:
     mistakes = [c for c in chosen if c.patch]
     left_out = {c for i, c in enumerate(mistakes) if i % args.every}
     chosen = [c for c in chosen if c not in left_out]
+    if args.hunt:  # it may find a marked mistake, too
+        chosen = [c._replace(patch=c.patch and c.patch._replace(passes=None)) for c in chosen]
     if not chosen:
         print(f"no mistake is called {' or '.join(args.only)}", file=sys.stderr)
         return 2
@@ -217,7 +248,7 @@ def main() -> int:
     print("| mistake | style | caught by |\n|---|---|---|")
     done = []
     with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
-        for judged in pool.map(lambda c: judge(args.attest, all_groups, args.core, c), chosen):
+        for judged in pool.map(lambda c: judge(args, all_groups, c), chosen):
             done.append(judged)
             name, style = judged.candidate.name, judged.candidate.style
             print(f"| {name} | {style} | {judged.remark} |", flush=True)
@@ -225,10 +256,10 @@ def main() -> int:
                 print(judged.broken, file=sys.stderr)
     if any(judged.broken for judged in done):
         return 2
-    if args.core:
+    if args.core or args.hunt:
         wrong = [judged for judged in done if judged.candidate.patch]
         caught = sum(judged.caught_by is not None for judged in wrong)
-        print(f"\nThe core catches {caught} of {len(wrong)} mistakes.")
+        print(f"\nThe {'hunt' if args.hunt else 'core'} catches {caught} of {len(wrong)} mistakes.")
         return 1 if any(j.caught_by and not j.candidate.patch for j in done) else 0
     return 0 if all(judged.good for judged in done) else 1
 
