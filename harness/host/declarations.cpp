@@ -14,6 +14,10 @@ std::string words_of(const std::optional<int>& bits) {
 
 std::string words_of(const std::optional<Rate>& rate) { return rate ? rate->to_string() : "none"; }
 
+std::string words_of(const std::optional<CostCounter>& cost) {
+  return cost ? cost->to_string() : "none";
+}
+
 std::string words_of(const ModuleSet& set) {
   std::vector<std::string_view> names;
   for (const ModuleInfo& info : modules()) {
@@ -44,7 +48,8 @@ std::string change(const Declarations& said, const Declarations& now) {
         changed("attest.arithmetic", words_of(said.fraction_bits), words_of(now.fraction_bits)),
         changed("attest.fixed_step", words_of(said.fixed_step), words_of(now.fixed_step)),
         changed("list of modules", words_of(said.modules), words_of(now.modules)),
-        changed("list of files", words_of(said.files), words_of(now.files))}) {
+        changed("list of files", words_of(said.files), words_of(now.files)),
+        changed("cost", words_of(said.cost), words_of(now.cost))}) {
     if (!difference.empty()) return difference;
   }
   return "";
@@ -77,7 +82,8 @@ Declarations Declarations::asked(const Port& port) {
           port.modules(),
           {},
           false,
-          port.files()};
+          port.files(),
+          port.cost()};
 }
 
 }  // namespace attest

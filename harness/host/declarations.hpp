@@ -18,9 +18,10 @@ struct Declarations {
   std::optional<int> fraction_bits;  // of a port in fixed point
   std::optional<Rate> fixed_step;    // of a port with a fixed sample time
   ModuleSet modules;
-  std::vector<std::string> profiles;    // that it supports; empty unless requested
-  bool is_recorded = false;             // its outputs are files; it cannot be called
-  std::vector<std::string> files = {};  // of a program: Port::files()
+  std::vector<std::string> profiles;     // that it supports; empty unless requested
+  bool is_recorded = false;              // its outputs are files; it cannot be called
+  std::vector<std::string> files = {};   // of a program: Port::files()
+  std::optional<CostCounter> cost = {};  // how it counts the cost of its steps
 
   // Asks a loaded port. The result has no profiles.
   static Declarations asked(const Port& port);

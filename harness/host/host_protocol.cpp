@@ -12,7 +12,7 @@
 #include "harness/core/error_json.hpp"
 #include "harness/core/json_text.hpp"
 #include "harness/core/printable.hpp"
-#include "harness/port/hello.hpp"
+#include "harness/host/declarations_json.hpp"
 #include "harness/realtime/painted_stack.hpp"
 
 namespace attest {
@@ -28,47 +28,6 @@ json to_json(const ModuleUnderTest& subject) {
           {"first_tick", subject.part.first_tick},
           {"is_last", subject.part.is_last},
           {"other_profiles", subject.other_profiles}};
-}
-
-json to_json(const Declarations& says) {
-  json out = {{"name", says.name},
-              {"version", says.version},
-              {"unsupported_groups", says.unsupported_groups},
-              {"modules", says.modules.to_ulong()}};
-  if (says.lacks.any()) out["lacks"] = says.lacks.words;
-  if (says.fraction_bits) out["fraction_bits"] = *says.fraction_bits;
-  if (says.fixed_step) out["fixed_step"] = says.fixed_step->to_string();
-  if (!says.files.empty()) out["files"] = says.files;
-  return out;
-}
-
-Declarations declarations_from(JsonReader in) {
-  Declarations says;
-  says.name = in.text("name");
-  says.version = in.text("version");
-  says.unsupported_groups = in.texts("unsupported_groups");
-  if (in.has("files")) says.files = in.texts("files");
-  for (const std::string& wrong :
-       {wrong_in_declared(says.name, says.version, says.unsupported_groups),
-        wrong_in_files(says.files)}) {
-    if (!wrong.empty()) in.wrong(wrong);
-  }
-  if (in.has("lacks")) {
-    const auto lacks = Lacks::parse(in.texts("lacks"));
-    if (!lacks) in.wrong("lacks", "is wrong: " + lacks.error().message);
-    if (lacks) says.lacks = *lacks;
-  }
-  if (in.has("fraction_bits")) {
-    const auto bits = in.integer("fraction_bits", fewest_fraction_bits, most_fraction_bits);
-    says.fraction_bits = static_cast<int>(bits);
-  }
-  if (in.has("fixed_step")) {
-    const auto step = Rate::parse(in.text("fixed_step"));
-    if (!step) in.wrong("fixed_step", "is wrong: " + step.error().message);
-    if (step) says.fixed_step = *step;
-  }
-  says.modules = ModuleSet(in.count("modules", ModuleSet().set().to_ulong()));
-  return says;
 }
 
 ModuleUnderTest subject_from(const json& in) {
@@ -322,9 +281,9 @@ std::optional<PortFault> read_fault(const Arrived& arrived) {
 }
 
 Result<Result<Declarations>> read_greeting(const Arrived& arrived) {
-  return read_answer(arrived, [](JsonReader& head) -> Result<Declarations> {
+  return read_answer(arrived, [&](JsonReader& head) -> Result<Declarations> {
     if (head.has("error")) return error_in(head);
-    return declarations_from(head.object("says"));
+    return declarations_from(head.object("says"), arrived.of_program);
   });
 }
 

@@ -119,6 +119,7 @@ class NotedUnit final : public Unit {
     const Noted noted(now_, module_, Call::batch);
     return unit_->batch(samples, timestamp_samples_us);
   }
+  std::span<const StepCost> costs() const override { return unit_->costs(); }
 
  private:
   std::unique_ptr<Unit> unit_;
@@ -141,6 +142,7 @@ class NotedPort final : public Port {
   std::optional<Rate> fixed_step() const override { return port_.fixed_step(); }
   bool is_one_at_a_time() const override { return port_.is_one_at_a_time(); }
   ModuleSet modules() const override { return port_.modules(); }
+  std::optional<CostCounter> cost() const override { return port_.cost(); }
   std::unique_ptr<Unit> create_unit(Module module, const std::string& profile,
                                     const std::string& definition) override {
     const Noted noted(now_, module, Call::create);

@@ -71,8 +71,8 @@ class BinaryConversation final : public Conversation {
     append(frame_, step.timestamp_sample_us);
     frame_ += inputs_of(module, step.sample);
     const std::span<char> out = outputs_of(module, step.sample);
-    const int result = result_of_request(out.size());
-    take(out.data(), out.size());
+    const int result = result_of_request(out.size() + size_of_cost());
+    take_outputs(out, step.cost);
     return result;
   }
 
@@ -135,7 +135,7 @@ class BinaryConversation final : public Conversation {
 
   int result_of_batch(Module module, std::span<ProgramStep> steps, std::size_t& done) {
     constexpr std::size_t head = 2 * sizeof(std::uint32_t);
-    const std::size_t each = outputs_of(module, steps.front().sample).size();
+    const std::size_t each = outputs_of(module, steps.front().sample).size() + size_of_cost();
     const Header answer = exchange();
     if (answer.size < head || answer.size > head + steps.size() * each) {
       broken(Request::batch, fmt::format("has a payload of {} bytes; {} to {} are possible",
@@ -149,10 +149,17 @@ class BinaryConversation final : public Conversation {
     }
     check_size(answer, head + done * each);
     for (ProgramStep& step : steps.first(done)) {
-      const std::span<char> out = outputs_of(module, step.sample);
-      take(out.data(), out.size());
+      take_outputs(outputs_of(module, step.sample), step.cost);
     }
     return result;
+  }
+
+  std::size_t size_of_cost() const { return hello().cost ? sizeof(StepCost) : 0; }
+
+  // The outputs of a step and, if the program counts it, its cost.
+  void take_outputs(std::span<char> out, StepCost& cost) {
+    take(out.data(), out.size());
+    if (hello().cost) take(&cost, sizeof cost);
   }
 
   void check_size(const Header& answer, std::size_t size) {

@@ -25,10 +25,11 @@ std::string_view name_of(Request request);  // "set_parameter"
 inline constexpr std::size_t max_batch = 1024;      // steps in one request
 inline constexpr std::size_t max_line = 64u << 10;  // bytes of a handshake or a text frame
 
-// One step: timestamp_sample, then inputs and outputs of a module in the sample.
+// One step: timestamp_sample, then inputs and outputs of a module in the sample, and its cost.
 struct ProgramStep {
   std::uint64_t timestamp_sample_us = 0;
   Sample sample{};
+  StepCost cost{};  // of an answer ATTEST_OK if hello().cost; otherwise undefined
 };
 
 // A program that has answered the handshake. A function that sends a request throws PortBroke if

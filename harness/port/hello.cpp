@@ -45,6 +45,16 @@ class Members {
     }
   }
 
+  bool has(const char* name) const { return object_.contains(name); }
+
+  // As optional(), but true and false are no numbers.
+  double number(const char* name, const char* what) {
+    if (has(name) && !object_.at(name).is_number()) {
+      set_error(fmt::format("has `{}` = {}; it is {}", name, text_of(object_.at(name)), what));
+    }
+    return optional<double>(name, what);
+  }
+
   void set_error(std::string error) {
     if (error_.empty()) error_ = std::move(error);
   }
@@ -145,6 +155,27 @@ void read_numbers(Members& members, Hello& hello) {
   }
 }
 
+void read_cost(Members& members, Hello& hello) {
+  if (!members.has("cost")) return;
+  const char* const what = "an object with `unit` and, for cycles, `clock_hz`";
+  const json given = members.required<json>("cost", what);
+  if (!given.is_object()) {
+    return members.set_error(fmt::format("has `cost` = {}; it is {}", text_of(given), what));
+  }
+  Members of_cost(given);
+  const auto unit = of_cost.required<std::string>("unit", "the unit in which it counts");
+  std::optional<double> clock_hz;
+  if (of_cost.has("clock_hz")) clock_hz = of_cost.number("clock_hz", "a number");
+  const auto counter = CostCounter::make(unit, clock_hz);
+  if (const std::string error = of_cost.error(); !error.empty()) {
+    members.set_error("is wrong: its `cost` " + error);
+  } else if (!counter) {
+    members.set_error("is wrong: " + counter.error().message);
+  } else {
+    hello.cost = *counter;
+  }
+}
+
 }  // namespace
 
 std::string wrong_in_files(const std::vector<std::string>& names) {
@@ -191,6 +222,7 @@ Result<Hello> parse_hello(std::string_view line) {
   if (lacks) hello.lacks = *lacks;
   if (!lacks) members.set_error("is wrong: `lacks`: " + lacks.error().message);
   read_numbers(members, hello);
+  read_cost(members, hello);
   hello.files = members.optional<std::vector<std::string>>(
       "files", "a list of the paths of further files of the port");
   for (const std::string& wrong :

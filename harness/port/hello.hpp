@@ -8,6 +8,7 @@
 
 #include "harness/core/rate.hpp"
 #include "harness/core/result.hpp"
+#include "harness/port/cost.hpp"
 #include "harness/port/lacks.hpp"
 #include "harness/trace/module.hpp"
 
@@ -29,7 +30,8 @@ struct Hello {
   Lacks lacks;
   std::optional<int> fraction_bits;
   std::optional<Rate> fixed_step;
-  std::vector<std::string> files;  // further files of the program, which the port's hash covers
+  std::vector<std::string> files;   // further files of the program, which the port's hash covers
+  std::optional<CostCounter> cost;  // its answers have the cost of each step
 };
 
 // What is wrong with Hello::files: too many names, or a name that is empty, too long or no text;

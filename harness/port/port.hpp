@@ -16,6 +16,7 @@
 #include "controller/attest_unit.h"
 #include "harness/core/rate.hpp"
 #include "harness/core/result.hpp"
+#include "harness/port/cost.hpp"
 #include "harness/port/lacks.hpp"
 #include "harness/trace/module.hpp"
 
@@ -68,6 +69,10 @@ class Unit {
                         std::span<const std::uint64_t> /*timestamp_samples_us*/) {
     return {0, ATTEST_UNSUPPORTED};
   }
+
+  // The costs of the steps of the last call that made steps: of each step that returned ATTEST_OK.
+  // Empty if the port does not count (Port::cost()). Valid until the next call.
+  virtual std::span<const StepCost> costs() const { return {}; }
 };
 
 // A unit of the module that has these structs.
@@ -109,6 +114,9 @@ class Port {
 
   // The files that a program names in the handshake, as paths from the folder in which it runs.
   virtual std::vector<std::string> files() const { return {}; }
+
+  // How the port counts the cost of its steps; empty if it does not count.
+  virtual std::optional<CostCounter> cost() const { return std::nullopt; }
 
   // A unit in its power-on state; null if the port does not support the profile or the definition,
   // or allows no further instance now. Only the mixer has a `definition`. The port must outlive the

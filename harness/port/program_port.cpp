@@ -46,8 +46,10 @@ class ProgramUnit final : public Unit {
     std::memcpy(info_.in.in(sample), in, info_.in.size);
     std::memcpy(info_.out.in(sample), out, info_.out.size);
     const Sample before = sample;
+    costs_.clear();
     const int result = answer_to_step();
     if (result != ATTEST_OK) return result;
+    if (talk_->hello().cost) costs_.push_back(step_.cost);
     keep_unpublished(info_.module, before, sample);
     std::memcpy(out, info_.out.in(sample), info_.out.size);
     return result;
@@ -61,15 +63,19 @@ class ProgramUnit final : public Unit {
     batch_.resize(samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) batch_[i] = {timestamps_us[i], samples[i]};
     Sample before = samples.front();
+    costs_.clear();
     Batched batched;
     batched.result = talk_->batch(number_, info_.module, batch_, batched.done);
     for (std::size_t i = 0; i < batched.done; ++i) {
       samples[i].copy_outputs(batch_[i].sample);
       keep_unpublished(info_.module, before, samples[i]);
       before.copy_outputs(samples[i]);
+      if (talk_->hello().cost) costs_.push_back(batch_[i].cost);
     }
     return batched;
   }
+
+  std::span<const StepCost> costs() const override { return costs_; }
 
  private:
   int answer_to_step() {
@@ -83,6 +89,7 @@ class ProgramUnit final : public Unit {
   const Lacks lacks_;
   ProgramStep step_;
   std::vector<ProgramStep> batch_;
+  std::vector<StepCost> costs_;
 };
 
 class ProgramPort final : public Port {
@@ -99,6 +106,7 @@ class ProgramPort final : public Port {
   bool is_one_at_a_time() const override { return true; }
   ModuleSet modules() const override { return hello_.modules; }
   std::vector<std::string> files() const override { return hello_.files; }
+  std::optional<CostCounter> cost() const override { return hello_.cost; }
 
   void finish() override { talk_->throw_late(); }
 

@@ -20,6 +20,9 @@ using nlohmann::json;
 // The names of the results. The index of a name is the result's number in attest_unit.h.
 constexpr std::array<std::string_view, 4> results{"ok", "unsupported", "invalid", "failed"};
 
+// The members of a StepCost.
+constexpr std::array<const char*, 2> cost_members{"cost", "stack"};
+
 json to_json(double value) {
   if (std::isnan(value)) return "nan";
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
@@ -81,8 +84,11 @@ class TextConversation final : public Conversation {
     for_each_channel(module, "out/", [&](const Channel& channel) {
       read += take_output(answer, channel, step.sample) ? 1 : 0;
     });
+    const int result = number_of(Request::step, answer);
+    if (hello().cost && result == ATTEST_OK) step.cost = cost_in(answer);
+    for (const char* name : cost_members) read += hello().cost && answer.contains(name) ? 1 : 0;
     if (answer.size() != read + 2) refuse_unknown(answer, module);
-    return number_of(Request::step, answer);
+    return result;
   }
 
  private:
@@ -106,11 +112,28 @@ class TextConversation final : public Conversation {
     return true;
   }
 
+  StepCost cost_in(const json& answer) {
+    const auto take = [&](const char* name) {
+      const auto found = answer.find(name);
+      if (found == answer.end()) {
+        broken(Request::step, fmt::format("lacks `{}`, although the handshake has `cost`", name));
+      }
+      const bool is_count = found->is_number_unsigned() && *found <= UINT32_MAX;
+      if (!is_count) {
+        broken(Request::step, fmt::format("has `{}` = {}; it is an integer from 0 to {}", name,
+                                          text_of(*found), UINT32_MAX));
+      }
+      return found->get<std::uint32_t>();
+    };
+    return {take(cost_members[0]), take(cost_members[1])};
+  }
+
   [[noreturn]] void refuse_unknown(const json& answer, Module module) {
     for (const auto& [name, value] : answer.items()) {
       const auto known = find_channel(module, name);
       const bool is_output = known && channels()[*known].is_output();
       if (name == "result" || name == "sequence" || is_output) continue;
+      if (hello().cost && (name == cost_members[0] || name == cost_members[1])) continue;
       broken(Request::step, fmt::format("has `{}`, which is no output of that module", name));
     }
     broken(Request::step, "has members that were not asked for");

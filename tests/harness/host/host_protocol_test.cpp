@@ -26,7 +26,9 @@ class Sent {
           return true;
         }) {}
 
-  Arrived as_answer_to(std::uint64_t request) { return {head_, reader_, request}; }
+  Arrived as_answer_to(std::uint64_t request, bool of_program = false) {
+    return {head_, reader_, request, of_program};
+  }
 
  private:
   static std::vector<std::size_t> sizes(const std::vector<std::string>& blobs) {
@@ -82,24 +84,27 @@ const json greeting = {{"request", 0},
                          {"unsupported_groups", {"tpa"}},
                          {"modules", 1},
                          {"fraction_bits", 22},
-                         {"fixed_step", "250"}}}};
+                         {"fixed_step", "250"},
+                         {"cost_unit", "cycles"},
+                         {"clock_hz", 25e6}}}};
 
 // The error of a greeting with another value at `pointer`; empty if it is accepted.
 std::string wrong_greeting(const char* pointer, const json& value) {
   json head = greeting;
   head[json::json_pointer(pointer)] = value;
   Sent sent(head, {});
-  const auto read = read_greeting(sent.as_answer_to(0));
+  const auto read = read_greeting(sent.as_answer_to(0, true));
   return read ? "" : read.error().message;
 }
 
 TEST(HostProtocol, AGreetingIsRead) {
   Sent sent(greeting, {});
-  const auto read = read_greeting(sent.as_answer_to(0));
+  const auto read = read_greeting(sent.as_answer_to(0, true));
   ASSERT_TRUE(read && *read) << read.error().message;
   EXPECT_EQ((*read)->name, "mine");
   EXPECT_EQ((*read)->fraction_bits, 22);
   EXPECT_EQ((*read)->fixed_step, Rate::hz(250));
+  EXPECT_EQ((*read)->cost, (CostCounter{CostUnit::cycles, 25e6}));
   EXPECT_TRUE((*read)->modules == only(Module::mc_att_control));
 }
 
@@ -125,12 +130,27 @@ TEST(HostProtocol, EachMemberOfAGreetingHasARange) {
         {"/says/lacks", json::array({"no such feature"})},
         {"/says/unsupported_groups", std::vector<std::string>(1001, "tpa")},
         {"/says/unsupported_groups", json::array({long_name})},
-        {"/says/unsupported_groups", json::array({7})}}) {
+        {"/says/unsupported_groups", json::array({7})},
+        {"/says/cost_unit", "joules"},
+        {"/says/cost_unit", 7},
+        {"/says/clock_hz", 0},
+        {"/says/clock_hz", -25e6},
+        {"/says/clock_hz", 1e13},
+        {"/says/clock_hz", "nan"},
+        {"/says/clock_hz", true}}) {
     const std::string member(std::string_view(pointer).substr(sizeof "/says"));
     EXPECT_THAT(wrong_greeting(pointer, value), HasSubstr(member)) << value;
   }
   EXPECT_EQ(wrong_greeting("/says/fraction_bits", 32), "");
   EXPECT_EQ(wrong_greeting("/says/fixed_step", "1000/3"), "");
+  EXPECT_EQ(wrong_greeting("/says/clock_hz", 1e12), "");
+}
+
+TEST(HostProtocol, ALibraryDoesNotCountItsCost) {
+  Sent sent(greeting, {});
+  const auto read = read_greeting(sent.as_answer_to(0));
+  ASSERT_FALSE(read);
+  EXPECT_THAT(read.error().message, HasSubstr("only a program counts its cost"));
 }
 
 std::string wrong_fault(const json& fault, bool of_program = false) {
@@ -289,7 +309,7 @@ TEST(HostProtocol, NoChangeOfAGreetingGivesAValueOutOfRange) {
       }
     }
     Sent sent(json(head), {});
-    const auto read = read_greeting(sent.as_answer_to(0));
+    const auto read = read_greeting(sent.as_answer_to(0, true));
     if (!read) {
       EXPECT_FALSE(read.error().message.empty());
       continue;
@@ -303,6 +323,10 @@ TEST(HostProtocol, NoChangeOfAGreetingGivesAValueOutOfRange) {
     }
     if (says.fixed_step) {
       EXPECT_GT(says.fixed_step->period_s(), 0) << head;
+    }
+    if (says.cost && says.cost->unit == CostUnit::cycles) {
+      EXPECT_GT(says.cost->clock_hz, 0) << head;
+      EXPECT_LE(says.cost->clock_hz, 1e12) << head;
     }
   }
 }

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""The starter in Python with text frames. `in_text.py MODE` answers one step wrongly, but
-`in_text.py fgetl` is right: it writes its handshake first, and reads as Octave does."""
+"""The starter in Python with text frames. `in_text.py MODE` answers one step wrongly. Two modes are
+right: `fgetl` writes its handshake first, and reads as Octave does; `counts` counts the cost of its
+steps."""
 
 import json
 import pathlib
@@ -76,11 +77,20 @@ WRONG = {
     "other_result": lambda answer: answer | {"result": "fine"},
     "unknown_output": lambda answer: answer | {"out/roll": 1},
     "text_for_number": lambda answer: answer | {"out/vehicle_rates_setpoint.roll": "0.1"},
+    "no_cost": lambda answer: {k: v for k, v in answer.items() if k != "cost"},
+    "no_stack": lambda answer: {k: v for k, v in answer.items() if k != "stack"},
+    "negative_cost": lambda answer: answer | {"cost": -1},
+    "large_cost": lambda answer: answer | {"cost": 2**32},
+    "half_a_byte": lambda answer: answer | {"stack": 0.5},
+    "undeclared_cost": lambda answer: answer | {"cost": 1, "stack": 0},
     "half_a_flag": lambda answer: answer | {"out/vehicle_rates_setpoint.published": 0.5},
 }
 
 
-def answer(request, units):
+COUNTING = ("counts", "no_cost", "no_stack", "negative_cost", "large_cost", "half_a_byte")
+
+
+def answer(request, units, counts):
     unit, result = request["unit"], "ok"
     reply = {"sequence": request["sequence"]}
     if request["do"] == "create":
@@ -92,6 +102,8 @@ def answer(request, units):
         result = "ok" if known else "invalid"
     else:
         reply |= outputs_of(units[unit].step(inputs_of(request)))
+        if counts:
+            reply |= {"cost": 1000 + request["timestamp"] // 4000 % 7, "stack": 256}
     return reply | {"result": result}
 
 
@@ -109,6 +121,8 @@ def main():
     mode = sys.argv[1] if len(sys.argv) > 1 else "right"
     hello = {"protocol": 1, "name": "in text", "version": "1", "frames": "text"}
     hello |= {"profiles": ["px4-v1.5.5"]} | ({"byte_after_line": True} if mode == "fgetl" else {})
+    counts = mode in COUNTING
+    hello |= {"cost": {"unit": "instructions"}} if counts else {}
     lines = lines_of_fgetl() if mode == "fgetl" else sys.stdin
     if mode == "fgetl":
         print(json.dumps(hello), flush=True)
@@ -118,7 +132,7 @@ def main():
     units, steps = {}, 0
     for line in lines:
         request = json.loads(line)
-        reply = answer(request, units)
+        reply = answer(request, units, counts)
         steps += request["do"] == "step"
         if mode in WRONG and steps == 20 and request["do"] == "step":
             reply = WRONG[mode](reply)
