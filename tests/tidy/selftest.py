@@ -46,7 +46,7 @@ EXAMPLES = {
         ({"controller/a.c": "#include <unistd.h>\n"}, {"controller/a.cpp": "#include <array>"}),
         (
             {"controller/starters/c_program/law.c": "#include <unistd.h>\n"},
-            {"controller/starters/c_program/program.c": "#include <unistd.h>\n"},
+            {"controller/starters/c_program/host.c": "#include <unistd.h>\n"},
         ),
     ],
     "one_owner": [
@@ -82,6 +82,10 @@ EXAMPLES = {
         (
             {"core/a.cpp": "", "run/CMakeLists.txt": "add_library(run a.cpp)"},
             {"core/a.cpp": "", "run/CMakeLists.txt": "x(${PROJECT_SOURCE_DIR}/core/a.cpp)"},
+        ),
+        (
+            {"board/start.c": "", "board/check": "cc main.c"},
+            {"board/start.c": "", "board/check": "cc start.c"},
         ),
         (
             {"core/dead.hpp": PURPOSE},

@@ -1,213 +1,246 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/*
- * program.c - makes a program of a port that implements attest_unit.h, for `--port proc:COMMAND`.
- *
- *     cc -std=c11 -O2 -ffp-contract=off -I<folder of attest_unit.h> YOUR_SOURCES program.c -lm
- *
- * It speaks the binary frames of PROTOCOL.md, for the controller only. A port on a board can keep
- * this file on the host, and send the structs to the board in its own functions. With the argument
- * --shared the frames are in memory shared with attest instead of pipes.
- */
-#include <poll.h>
-#include <sched.h>
-#include <stdatomic.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/mman.h>
-#include <unistd.h>
+#include "program.h"
 
-#include "attest_unit.h"
+#include <string.h>
+
+#include "modules.h"
+
+/* 1, or 0 for a board with less than 100 kB of memory: the outputs of a batch need most of it.
+ * attest then asks for one step after the other. */
+#ifndef PROGRAM_BATCH
+#define PROGRAM_BATCH 1
+#endif
 
 enum { CREATE = 1, DESTROY, SET_PARAMETER, STEP, BATCH };
-enum { MAX_BATCH = 1024, MAX_TEXT = 4096, UNITS_MAX = 64, PROFILE_MAX = 64 };
+enum { MAX_BATCH = PROGRAM_BATCH ? 1024 : 1, MAX_TEXT = 4096, MAX_PROFILE = 64, MAX_UNITS = 64 };
 
 typedef struct {
   uint32_t size, kind, unit, sequence;
 } header;
 
-typedef struct {
-  uint64_t timestamp_sample;
-  attest_inputs in;
-} timed_inputs;
+/* ---- answers ---------------------------------------------------------------------------------*/
 
-/* The payloads: structs as they are in memory, on a little-endian machine. */
-typedef union {
-  char text[MAX_TEXT];
-  struct {
-    uint32_t module, profile_length;
-    char profile[MAX_TEXT - 8];
-  } create;
-  struct {
-    float value;
-    char name[MAX_TEXT - 4];
-  } set_parameter;
-  timed_inputs step;
-  struct {
-    uint32_t steps, zero;
-    timed_inputs step[MAX_BATCH];
-  } batch;
-} request;
+/* An answer, and in the handshake a line. Too long a handshake has no end, and attest says so. */
+static unsigned char answer[8192 + MAX_BATCH * sizeof(module_outputs)];
+static size_t answer_size;
 
-typedef struct {
-  uint32_t result;
-  union {
-    attest_outputs out;
-    struct {
-      uint32_t done;
-      attest_outputs out[MAX_BATCH];
-    } batch;
-  } of;
-} answer;
+static void put(const void* from, size_t size) {
+  if (size > sizeof answer - answer_size) return;
+  memcpy(answer + answer_size, from, size);
+  answer_size += size;
+}
+
+static void put_number(uint32_t number) { put(&number, sizeof number); }
+
+static void put_text(const char* text) { put(text, strlen(text)); }
+
+static void send_answer(const header* head) {
+  header of_answer = *head;
+  of_answer.size = (uint32_t)(answer_size - sizeof of_answer);
+  memcpy(answer, &of_answer, sizeof of_answer);
+  connection_write(answer, answer_size);
+}
+
+/* ---- requests --------------------------------------------------------------------------------*/
 
 typedef struct {
   void* self; /* NULL if the entry is free */
-  uint32_t number;
-  attest_outputs out; /* the same struct for every step, as the ABI says */
+  uint32_t number, module;
+  module_outputs out; /* the same struct for every step, as the ABI says */
 } instance;
 
-static instance instances[UNITS_MAX];
+static instance instances[MAX_UNITS];
 
 static instance* find(uint32_t number) {
-  for (int i = 0; i < UNITS_MAX; ++i) {
+  for (int i = 0; i < MAX_UNITS; ++i) {
     if (instances[i].self && instances[i].number == number) return &instances[i];
   }
   return NULL;
 }
 
-static uint32_t create(const attest_unit* port, uint32_t number, const request* of) {
-  char profile[PROFILE_MAX] = {0};
-  if (of->create.module != 0 || of->create.profile_length >= PROFILE_MAX) return ATTEST_UNSUPPORTED;
-  memcpy(profile, of->create.profile, of->create.profile_length);
-  for (int i = 0; i < UNITS_MAX; ++i) {
+static uint32_t create(uint32_t number, const char* payload) {
+  struct {
+    uint32_t module, length;
+  } start;
+  char profile[MAX_PROFILE] = {0};
+  memcpy(&start, payload, sizeof start);
+  if (start.length >= MAX_PROFILE) return ATTEST_UNSUPPORTED;
+  memcpy(profile, payload + sizeof start, start.length);
+  for (int i = 0; i < MAX_UNITS; ++i) {
     if (instances[i].self) continue;
     memset(&instances[i], 0, sizeof instances[i]);
     instances[i].number = number;
-    instances[i].self = port->create(profile);
+    instances[i].module = start.module;
+    instances[i].self = module_create(start.module, profile, payload + sizeof start + start.length);
     return instances[i].self ? ATTEST_OK : ATTEST_UNSUPPORTED;
   }
   return ATTEST_UNSUPPORTED;
 }
 
-/* Fills `to` and returns the size of its payload. */
-static size_t batch(const attest_unit* port, instance* unit, const request* of, answer* to) {
-  uint32_t done = 0;
-  to->result = ATTEST_OK;
-  for (; done < of->batch.steps && done < MAX_BATCH; ++done) {
-    to->result = (uint32_t)port->step(unit->self, &of->batch.step[done].in, &unit->out);
-    if (to->result != ATTEST_OK) break;
-    to->of.batch.out[done] = unit->out;
-  }
-  to->of.batch.done = done;
-  return 2 * sizeof(uint32_t) + done * sizeof(attest_outputs);
-}
-
-static size_t serve(const attest_unit* port, const header* head, request* of, answer* to) {
+/* Requests without steps. Returns 0 if the connection ended. */
+static int serve_text(const header* head) {
+  static char payload[MAX_TEXT + 1];
   instance* const unit = find(head->unit);
+  float value;
+  if (head->size > MAX_TEXT || !connection_read(payload, head->size)) return 0;
+  payload[head->size] = '\0';
   if (head->kind == CREATE) {
-    to->result = create(port, head->unit, of);
-  } else if (!unit) {
-    to->result = ATTEST_INVALID;
-  } else if (head->kind == SET_PARAMETER) {
-    to->result =
-        (uint32_t)port->set_parameter(unit->self, of->set_parameter.name, of->set_parameter.value);
-  } else if (head->kind == STEP) {
-    to->result = (uint32_t)port->step(unit->self, &of->step.in, &unit->out);
-    to->of.out = unit->out;
-    return sizeof(uint32_t) + sizeof(attest_outputs);
-  } else if (head->kind == BATCH) {
-    return batch(port, unit, of, to);
-  } else {
-    port->destroy(unit->self);
+    put_number(create(head->unit, payload));
+  } else if (head->kind == SET_PARAMETER && unit) {
+    memcpy(&value, payload, sizeof value);
+    put_number(
+        (uint32_t)module_set_parameter(unit->module, unit->self, payload + sizeof value, value));
+  } else if (head->kind == DESTROY && unit) {
+    module_destroy(unit->module, unit->self);
     unit->self = NULL;
-    to->result = ATTEST_OK;
-  }
-  return sizeof(uint32_t);
-}
-
-/* ---- frames through pipes -------------------------------------------------------------------- */
-
-static int read_frame(header* head, request* of) {
-  if (fread(head, sizeof *head, 1, stdin) != 1 || head->size > sizeof *of) return 0;
-  return head->size == 0 || fread(of, head->size, 1, stdin) == 1;
-}
-
-static void write_frame(const header* head, const answer* to) {
-  fwrite(head, sizeof *head, 1, stdout);
-  fwrite(to, head->size, 1, stdout);
-  fflush(stdout);
-}
-
-/* ---- frames in shared memory ----------------------------------------------------------------- */
-
-enum { SHARED_FILE = 3 };
-enum { LOOKS_ALONE = 4096, LOOKS_UNTIL_ASKED = 1024 };
-
-typedef struct {
-  _Alignas(64) _Atomic uint32_t requests;
-  _Alignas(64) _Atomic uint32_t answers;
-  _Alignas(4096) unsigned char request[262144];
-  unsigned char answer[262144];
-} shared_memory;
-
-static shared_memory* shared; /* NULL if frames are in pipes */
-
-static int share_memory(void) {
-  void* const at = mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED, SHARED_FILE, 0);
-  if (at == MAP_FAILED) return 0;
-  shared = at;
-  return 1;
-}
-
-/* Waits until attest has written one more request. Returns 0 if attest has closed stdin. */
-static int wait_for_request(void) {
-  const uint32_t last = atomic_load_explicit(&shared->answers, memory_order_relaxed);
-  struct pollfd in = {.fd = STDIN_FILENO, .events = POLLIN};
-  for (unsigned look = 0; atomic_load_explicit(&shared->requests, memory_order_acquire) == last;
-       ++look) {
-    if (look < LOOKS_ALONE) continue;
-    sched_yield(); /* so that attest has a turn if it runs on the same CPU */
-    if (look % LOOKS_UNTIL_ASKED == 0 && poll(&in, 1, 0) != 0) return 0;
+    put_number(ATTEST_OK);
+  } else {
+    put_number(ATTEST_INVALID);
   }
   return 1;
 }
 
-static int take_frame(header* head, request* of) {
-  if (!wait_for_request()) return 0;
-  memcpy(head, shared->request, sizeof *head);
-  if (head->size > sizeof *of) return 0;
-  memcpy(of, shared->request + sizeof *head, head->size);
+/* Reads the inputs of a step, steps, and adds its outputs to the answer. Returns 0 if the
+ * connection ended. */
+static int serve_step(instance* unit, uint32_t* result) {
+  struct {
+    uint64_t timestamp_sample;
+    module_inputs in;
+  } timed;
+  const attest_timestamp_sample* const sample = port_extension(ATTEST_EXTENSION_TIMESTAMP_SAMPLE);
+  if (!connection_read(&timed, sizeof timed.timestamp_sample + modules[unit->module].inputs)) {
+    return 0;
+  }
+  if (*result != ATTEST_OK) return 1; /* a batch ends with the first error */
+  if (sample && unit->module == CONTROLLER) {
+    *result = (uint32_t)sample->set_timestamp_sample(unit->self, timed.timestamp_sample);
+  }
+  if (*result == ATTEST_OK) {
+    *result = (uint32_t)module_step(unit->module, unit->self, &timed.in, &unit->out);
+  }
+  put(&unit->out, modules[unit->module].outputs);
   return 1;
 }
 
-static void put_frame(const header* head, const answer* to) {
-  memcpy(shared->answer, head, sizeof *head);
-  memcpy(shared->answer + sizeof *head, to, head->size);
-  atomic_fetch_add_explicit(&shared->answers, 1, memory_order_release);
+/* `step` and `batch`. The inputs of a batch are read step by step, so they need no memory. */
+static int serve_steps(const header* head, instance* unit) {
+  uint32_t result = ATTEST_OK, done = 0;
+  struct {
+    uint32_t steps, zero;
+  } batch = {1, 0};
+  if (head->kind == BATCH && !connection_read(&batch, sizeof batch)) return 0;
+  const size_t at = answer_size;
+  put_number(result);
+  if (head->kind == BATCH) put_number(done);
+  for (uint32_t i = 0; i < batch.steps; ++i) {
+    if (!serve_step(unit, &result)) return 0;
+    done += result == ATTEST_OK;
+  }
+  memcpy(answer + at, &result, sizeof result);
+  if (head->kind == BATCH) {
+    memcpy(answer + at + sizeof result, &done, sizeof done);
+    answer_size = at + sizeof result + sizeof done + done * modules[unit->module].outputs;
+  }
+  return 1;
 }
 
-int main(int count, char** arguments) {
-  static char line[65536];
-  static request of;
-  static answer to;
-  const attest_unit* const port = attest_unit_v1();
-  const int is_shared = count > 1 && strcmp(arguments[1], "--shared") == 0;
+void program_serve(void) {
   header head;
-  if (!fgets(line, sizeof line, stdin)) return EXIT_FAILURE;
-  if (is_shared && !share_memory()) return EXIT_FAILURE;
-  printf(
-      "{\"protocol\":1,\"name\":\"%s\",\"version\":\"%s\",\"frames\":\"%s\",\"batch\":true,"
-      "\"profiles\":[\"px4-v1.5.5\",\"px4-v1.3.4\"]}\n",
-      port->name, port->version, is_shared ? "shared" : "binary");
-  fflush(stdout);
-  while (shared ? take_frame(&head, &of) : read_frame(&head, &of)) {
-    if (head.size < MAX_TEXT) of.text[head.size] = '\0'; /* terminates the name of a parameter */
-    head.size = (uint32_t)serve(port, &head, &of, &to);
-    if (shared) {
-      put_frame(&head, &to);
-    } else {
-      write_frame(&head, &to);
+  while (connection_read(&head, sizeof head)) {
+    instance* const unit = find(head.unit);
+    answer_size = sizeof head;
+    if (head.kind != STEP && head.kind != BATCH) {
+      if (!serve_text(&head)) break;
+    } else if (!unit || !serve_steps(&head, unit)) {
+      break;
+    }
+    send_answer(&head);
+  }
+  for (int i = 0; i < MAX_UNITS; ++i) {
+    if (instances[i].self) module_destroy(instances[i].module, instances[i].self);
+    instances[i].self = NULL;
+  }
+}
+
+/* ---- the handshake ---------------------------------------------------------------------------*/
+
+/* The versions of the law. */
+static const char* const profiles[] = {"px4-v1.3.4",  "px4-v1.5.5", "px4-v1.14.4", "px4-v1.15.4",
+                                       "px4-v1.16.0", "px4-v1.17",  "px4-v1.18"};
+
+static int supports(const char* profile) {
+  for (uint32_t module = 0; module < MODULES; ++module) {
+    void* const self = module_create(module, profile, "R: 4x 10000 10000 10000 0");
+    if (!self) continue;
+    module_destroy(module, self);
+    return 1;
+  }
+  return 0;
+}
+
+static void put_list(const char* name) {
+  put_text(",\"");
+  put_text(name);
+  put_text("\":[");
+}
+
+/* Adds a word to a list. */
+static void put_word(const char* word, size_t size) {
+  if (answer[answer_size - 1] != '[') put_text(",");
+  put_text("\"");
+  put(word, size);
+  put_text("\"");
+}
+
+/* A list in an extension is text, with commas. */
+static void put_words(const char* name, const char* text) {
+  if (!text) return;
+  put_list(name);
+  while (*text) {
+    const size_t size = strcspn(text, ", ");
+    if (size) put_word(text, size);
+    text += size + (text[size] != '\0');
+  }
+  put_text("]");
+}
+
+static void put_member(const char* name, const char* text) {
+  if (!text) return;
+  put_text(",\"");
+  put_text(name);
+  put_text("\":\"");
+  put_text(text);
+  put_text("\"");
+}
+
+int program_greet(const char* frames) {
+  char byte;
+  do { /* the line of attest has nothing that this program needs */
+    if (!connection_read(&byte, 1)) return 0;
+  } while (byte != '\n');
+  answer_size = 0;
+  put_text("{\"protocol\":1");
+  put_member("name", attest_unit_v1()->name);
+  put_member("version", attest_unit_v1()->version);
+  put_member("frames", frames);
+  if (PROGRAM_BATCH) put_text(",\"batch\":true");
+  put_list("profiles");
+  for (size_t i = 0; i < sizeof profiles / sizeof profiles[0]; ++i) {
+    if (supports(profiles[i])) put_word(profiles[i], strlen(profiles[i]));
+  }
+  put_text("]");
+  put_list("modules");
+  for (uint32_t module = MIXER; module < MODULES; ++module) {
+    if (port_extension(modules[module].extension)) {
+      put_word(modules[module].name, strlen(modules[module].name));
     }
   }
-  return EXIT_SUCCESS;
+  put_text("]");
+  put_words("unsupported_groups", port_extension(ATTEST_EXTENSION_UNSUPPORTED_GROUPS));
+  put_words("lacks", port_extension(ATTEST_EXTENSION_LACKS));
+  put_member("arithmetic", port_extension(ATTEST_EXTENSION_ARITHMETIC));
+  put_member("fixed_step", port_extension(ATTEST_EXTENSION_FIXED_STEP));
+  put_text("}\n");
+  connection_write(answer, answer_size);
+  return 1;
 }
