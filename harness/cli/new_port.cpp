@@ -31,12 +31,18 @@ struct Language {
   const char* toolchain;   // the program that its `check` needs
   bool has_headers;        // it includes the ABI headers
   std::string_view group;  // of cases, for an example of `check`
+  bool has_c = false;      // it has the C starters in folders of their own, to choose from
 };
+
+// Their sources, and what a program on a board consists of.
+constexpr std::array starters_for_board{"c", "c_cascade", "c_law", "c_program"};
 
 constexpr std::array languages{
     Language{"c", "C", "cc", true, "attitude"},
     Language{"c_cascade", "C, with both units of PX4 v1.14 to v1.18", "cc", true, "attitude"},
     Language{"c_law", "C, with the attitude law and the rate law alone", "cc", true, "rate_law"},
+    Language{"cortex_m", "C for a Cortex-M, run in an emulator", "arm-none-eabi-gcc", true,
+             "attitude", true},
     Language{"cpp", "C++", "c++", true, "attitude"},
     Language{"octave", "Octave, with the attitude law and the rate law alone", "octave-cli", false,
              "rate_law"},
@@ -61,15 +67,15 @@ Result<Language> language_named(const std::string& name) {
 
 // The folders from which a new port is copied: in the source tree, or in an installation.
 struct Parts {
-  fs::path starter, headers, ci;
+  fs::path starters, headers, ci;
 };
 
-Result<Parts> parts_of(const Language& language) {
+Result<Parts> find_parts() {
   const auto data = data_folder();
   if (!data) return fail("the data of this attest is missing: share/attest of its installation");
   const bool is_installed = is_installation(*data);
-  const fs::path starters = *data / (is_installed ? "starters" : "controller/starters");
-  return Parts{starters / language.name, *data / (is_installed ? "include" : "controller"),
+  return Parts{*data / (is_installed ? "starters" : "controller/starters"),
+               *data / (is_installed ? "include" : "controller"),
                *data / (is_installed ? "ci" : "ci/examples")};
 }
 
@@ -88,9 +94,25 @@ void copy_starter(const fs::path& from, const fs::path& to) {
   }
 }
 
+// The sources in C of another starter. Throws fs::filesystem_error.
+void copy_sources(const fs::path& from, const fs::path& to) {
+  fs::create_directories(to);
+  for (const auto& entry : fs::directory_iterator(from)) {
+    const fs::path extension = entry.path().extension();
+    if (extension == ".c" || extension == ".h") {
+      fs::copy_file(entry.path(), to / entry.path().filename());
+    }
+  }
+}
+
 // Throws fs::filesystem_error.
 void lay_out(const Parts& parts, const Language& language, const fs::path& folder) {
-  copy_starter(parts.starter, folder);
+  copy_starter(parts.starters / language.name, folder);
+  if (language.has_c) {
+    for (const char* starter : starters_for_board) {
+      copy_sources(parts.starters / starter, folder / starter);
+    }
+  }
   if (language.has_headers) {
     fs::create_directories(folder / "include");
     for (const char* header : {"attest_unit.h", "attest_actuation.h", "attest_cascade.h",
@@ -123,7 +145,7 @@ Result<Language> make_port(const NewPortOptions& options, const std::string& sui
   }
   auto language = language_named(options.language);
   if (!language) return language;
-  const auto parts = parts_of(*language);
+  const auto parts = find_parts();
   if (!parts) return tl::unexpected(parts.error());
   const auto made = make_new_folder(options.folder, [&](const fs::path& folder) -> Result<void> {
     lay_out(*parts, *language, folder);
@@ -162,7 +184,8 @@ void add_new_port(const CommandLine& line) {
       .option("--lang", options->language,
               "Port to start from: `c`, `cpp`, `python`, `rust` or `simulink` for v1.5.5 and "
               "v1.3.4; `c_cascade` or `python_cascade` for v1.14 to v1.18; `c_law`, "
-              "`python_law` or `octave` for the two laws of v1.14 to v1.17 alone")
+              "`python_law` or `octave` for the two laws of v1.14 to v1.17 alone; `cortex_m` for "
+              "any of those in C on an emulated board")
       .type("LANG");
   command.examples(
       {{"attest new-port mine --lang c", "a port in C; mine/check builds and runs it"},

@@ -62,8 +62,8 @@ made() {
   run "$ATTEST" new-port mine --lang pyton
   [ "$status" -eq 2 ]
   has "no starter in \`pyton\`; did you mean \`python\`?"
-  has "; there are c, c_cascade, c_law, cpp, octave, python, python_cascade, python_law, rust, "
-  has ", rust, simulink"
+  has "; there are c, c_cascade, c_law, cortex_m, cpp, octave, python, "
+  has ", python, python_cascade, python_law, rust, simulink"
   [ ! -e mine ]
   mkdir mine
   echo mine >mine/file

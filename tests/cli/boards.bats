@@ -1,0 +1,54 @@
+# Ports on an emulated board. Needs arm-none-eabi-gcc with newlib, and qemu-system-arm.
+load common
+
+setup() {
+  cd "$BATS_TEST_TMPDIR"
+  cp "$ATTEST" attest
+  export ATTEST_SUITE=$SOURCE PATH=$PWD:$PATH
+  "$ATTEST" new-port mine --lang cortex_m >/dev/null
+}
+
+# The options of `check` give the bits of the reference.
+@test "a Cortex-M4F conforms to the bit" {
+  run mine/check --core --profile px4-v1.5.5 --level exact
+  [ "$status" -eq 0 ]
+  has "PASS 39 passed, 0 failed"
+}
+
+@test "a Cortex-M3 without floating point unit conforms to the bit" {
+  TARGET=m3 run mine/check --group attitude --rate 250 --profile px4-v1.5.5 --level exact
+  [ "$status" -eq 0 ]
+  has "PASS 20 passed, 0 failed"
+}
+
+@test "the units and the laws of v1.14 to v1.18 are on the other processors" {
+  TARGET=m33 LAW=c_cascade run mine/check --group modes,rates --rate 250 \
+    --profile px4-v1.16.0 --level exact
+  [ "$status" -eq 0 ]
+  has "PASS"
+  TARGET=m7 LAW=c_law run mine/check --group rate_law,attitude_law --rate 250 \
+    --profile px4-v1.16.0 --level exact
+  [ "$status" -eq 0 ]
+  has "PASS"
+}
+
+@test "a compiler that ignores NaN is caught" {
+  CFLAGS=-Ofast run mine/check --group robustness --rate 250 --profile px4-v1.5.5 --no-diagnose
+  [ "$status" -eq 1 ]
+  has "non-finite"
+}
+
+@test "a fault of the processor is a crash, with its address" {
+  sed -i 's|^static int step(.*{|&\n  __builtin_trap();|' mine/c/unit.c
+  grep -q builtin_trap mine/c/unit.c
+  run mine/check --filter px4-v1.5.5/rates/p_alone@250hz --no-diagnose
+  [ "$status" -eq 1 ]
+  has "crash: "
+  has "it last printed: fault at 0x"
+}
+
+@test "an unknown target is an error" {
+  TARGET=m5 run mine/check
+  [ "$status" -eq 2 ]
+  has "TARGET=m5 is no target: m4f, m7, m33, m3"
+}
