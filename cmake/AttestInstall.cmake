@@ -59,6 +59,7 @@ set(documents
     controller/attest_unit.h
     controller/starters/c_program/README.md
     controller/starters/cortex_m/README.md
+    controller/starters/serial_board/README.md
     controller/starters/simulink/README.md
     docs/flights.md
     docs/hunt.md

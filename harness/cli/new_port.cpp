@@ -35,7 +35,7 @@ struct Language {
 };
 
 // Their sources, and what a program on a board consists of.
-constexpr std::array starters_for_board{"c", "c_cascade", "c_law", "c_program"};
+constexpr std::array starters_for_board{"c", "c_cascade", "c_law", "c_program", "cortex_m"};
 
 constexpr std::array languages{
     Language{"c", "C", "cc", true, "attitude"},
@@ -52,6 +52,7 @@ constexpr std::array languages{
     Language{"python_law", "Python, with the attitude law and the rate law alone", "python3", false,
              "rate_law"},
     Language{"rust", "Rust", "cargo", false, "attitude"},
+    Language{"serial_board", "C for a board on a serial line", "python3", true, "attitude", true},
     Language{"simulink", "C generated from a Simulink model", "cc", true, "attitude"},
 };
 
@@ -99,7 +100,7 @@ void copy_sources(const fs::path& from, const fs::path& to) {
   fs::create_directories(to);
   for (const auto& entry : fs::directory_iterator(from)) {
     const fs::path extension = entry.path().extension();
-    if (extension == ".c" || extension == ".h") {
+    if (extension == ".c" || extension == ".h" || extension == ".ld") {
       fs::copy_file(entry.path(), to / entry.path().filename());
     }
   }
@@ -109,7 +110,8 @@ void copy_sources(const fs::path& from, const fs::path& to) {
 void lay_out(const Parts& parts, const Language& language, const fs::path& folder) {
   copy_starter(parts.starters / language.name, folder);
   if (language.has_c) {
-    for (const char* starter : starters_for_board) {
+    for (const std::string_view starter : starters_for_board) {
+      if (starter == language.name) continue;
       copy_sources(parts.starters / starter, folder / starter);
     }
   }
@@ -184,8 +186,8 @@ void add_new_port(const CommandLine& line) {
       .option("--lang", options->language,
               "Port to start from: `c`, `cpp`, `python`, `rust` or `simulink` for v1.5.5 and "
               "v1.3.4; `c_cascade` or `python_cascade` for v1.14 to v1.18; `c_law`, "
-              "`python_law` or `octave` for the two laws of v1.14 to v1.17 alone; `cortex_m` for "
-              "any of those in C on an emulated board")
+              "`python_law` or `octave` for the two laws of v1.14 to v1.17 alone; `cortex_m` or "
+              "`serial_board` for those in C on an emulated or a real board")
       .type("LANG");
   command.examples(
       {{"attest new-port mine --lang c", "a port in C; mine/check builds and runs it"},

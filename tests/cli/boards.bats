@@ -47,6 +47,18 @@ setup() {
   has "it last printed: fault at 0x"
 }
 
+@test "a board with a UART reports its fault over the serial line" {
+  "$ATTEST" new-port board --lang serial_board >/dev/null
+  TARGET=m4f run board/check --filter px4-v1.5.5/rates/p_alone@250hz
+  [ "$status" -eq 0 ]
+  has "PASS 1 passed"
+  sed -i 's|^static int step(.*{|&\n  __builtin_trap();|' board/c/unit.c
+  TARGET=m4f run board/check --filter px4-v1.5.5/rates/p_alone@250hz --no-diagnose
+  [ "$status" -eq 1 ]
+  has "protocol: "
+  has "the board has a fault at 0x"
+}
+
 @test "an unknown target is an error" {
   TARGET=m5 run mine/check
   [ "$status" -eq 2 ]

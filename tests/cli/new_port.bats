@@ -63,7 +63,7 @@ made() {
   [ "$status" -eq 2 ]
   has "no starter in \`pyton\`; did you mean \`python\`?"
   has "; there are c, c_cascade, c_law, cortex_m, cpp, octave, python, "
-  has ", python, python_cascade, python_law, rust, simulink"
+  has ", python, python_cascade, python_law, rust, serial_board, simulink"
   [ ! -e mine ]
   mkdir mine
   echo mine >mine/file

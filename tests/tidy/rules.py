@@ -73,13 +73,16 @@ def _reachable(folder: str) -> list[str]:
 _STANDARD = re.compile(r"[a-z_0-9]+|(?:float|math|stdbool|stddef|stdint|stdio|stdlib|string)\.h")
 
 
-# It talks to attest with the functions of POSIX, and has no part of the law.
-_HOST_PROGRAM = "controller/starters/c_program/host.c"
+# They talk to attest with the functions of POSIX, and have no part of the law.
+_HOST_PROGRAMS = (
+    "controller/starters/c_program/host.c",
+    "controller/starters/serial_board/uart_host.c",
+)
 
 
 def controller_stands_alone(tree: Tree):
     for path in tree.cxx("controller/"):
-        if path == _HOST_PROGRAM:
+        if path in _HOST_PROGRAMS:
             continue
         for include in cxx.includes(tree.text(path)):
             own = include.quoted and not include.path.startswith(("harness/", "tests/"))

@@ -41,7 +41,7 @@ void* _sbrk(ptrdiff_t increment) {
 
 /* `frame` is what the processor pushed: r0 to r3, r12, lr, pc, psr. */
 __attribute__((used)) static void fault_at(const uint32_t* frame) {
-  static char text[] = "fault at 0x00000000; arm-none-eabi-addr2line -e port.elf names the line\n";
+  static char text[] = "fault at 0x00000000; arm-none-eabi-addr2line names the line\n";
   const uint32_t pc = frame[6];
   for (int i = 0; i < 8; ++i) text[18 - i] = "0123456789abcdef"[pc >> (4 * i) & 15];
   board_fail(text);
