@@ -32,6 +32,50 @@ setup() {
   has "PASS"
 }
 
+# costs: of the first steps of a unit whose inputs are zero.
+costs() {
+  "$PYTHON" - qemu-system-arm -M mps2-an386 -display none -monitor none \
+    -icount shift=5,sleep=off -semihosting-config enable=on,target=native \
+    -kernel mine/port.elf <<'COSTS'
+import struct, subprocess, sys
+pipe = subprocess.PIPE
+board = subprocess.Popen(sys.argv[1:], stdin=pipe, stdout=pipe)
+
+def request(kind, payload):
+    board.stdin.write(struct.pack("<4I", len(payload), kind, 1, 1) + payload)
+    board.stdin.flush()
+    return board.stdout.read(struct.unpack("<4I", board.stdout.read(16))[0])
+
+board.stdin.write(b"{}\n")
+board.stdin.flush()
+board.stdout.readline()
+request(1, struct.pack("<2I", 0, 10) + b"px4-v1.5.5")
+for _ in range(3):
+    print(*struct.unpack("<2I", request(4, bytes(128))[-8:]))
+COSTS
+}
+
+@test "a step costs the same cycles in each run" {
+  mine/check --filter px4-v1.5.5/rates/p_alone@250hz >/dev/null
+  costs >once
+  costs >twice
+  diff once twice
+  read -r cycles stack <once
+  [ "$cycles" -gt 100 ]
+  [ "$cycles" -lt 3000 ]
+  [ "$stack" -gt 200 ]
+  [ "$stack" -lt 2000 ]
+}
+
+@test "a step that takes longer than the counter of SysTick is counted" {
+  local loop='for (volatile int i = 0; i < 4000000; ++i) continue;'
+  sed -i "s|^static int step(.*{|&\n  $loop|" mine/c/unit.c
+  mine/check --filter px4-v1.5.5/parameters/no_such >/dev/null || true
+  read -r cycles _ < <(costs)
+  [ "$cycles" -gt $((1 << 24)) ]
+  [ "$cycles" -lt $((1 << 25)) ]
+}
+
 @test "a compiler that ignores NaN is caught" {
   CFLAGS=-Ofast run mine/check --group robustness --rate 250 --profile px4-v1.5.5 --no-diagnose
   [ "$status" -eq 1 ]

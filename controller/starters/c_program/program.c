@@ -11,6 +11,14 @@
 #define PROGRAM_BATCH 1
 #endif
 
+/* The frequency of cost_end(), or 0: the program does not count. */
+#ifndef PROGRAM_CLOCK_HZ
+#define PROGRAM_CLOCK_HZ 0
+#endif
+#define TEXT_OF(number) #number
+#define COST_OF(clock_hz) ",\"cost\":{\"unit\":\"cycles\",\"clock_hz\":" TEXT_OF(clock_hz) "}"
+
+enum { COUNTS = PROGRAM_CLOCK_HZ > 0, COST_SIZE = COUNTS ? 2 * sizeof(uint32_t) : 0 };
 enum { CREATE = 1, DESTROY, SET_PARAMETER, STEP, BATCH };
 enum { MAX_BATCH = PROGRAM_BATCH ? 1024 : 1, MAX_TEXT = 4096, MAX_PROFILE = 64, MAX_UNITS = 64 };
 
@@ -21,7 +29,7 @@ typedef struct {
 /* ---- answers ---------------------------------------------------------------------------------*/
 
 /* An answer, and in the handshake a line. Too long a handshake has no end, and attest says so. */
-static unsigned char answer[8192 + MAX_BATCH * sizeof(module_outputs)];
+static unsigned char answer[8192 + MAX_BATCH * (sizeof(module_outputs) + COST_SIZE)];
 static size_t answer_size;
 
 static void put(const void* from, size_t size) {
@@ -100,7 +108,7 @@ static int serve_text(const header* head) {
   return 1;
 }
 
-/* Reads the inputs of a step, steps, and adds its outputs to the answer. Returns 0 if the
+/* Reads the inputs of a step, steps, and adds outputs and cost to the answer. Returns 0 if the
  * connection ended. */
 static int serve_step(instance* unit, uint32_t* result) {
   struct {
@@ -111,14 +119,19 @@ static int serve_step(instance* unit, uint32_t* result) {
   if (!connection_read(&timed, sizeof timed.timestamp_sample + modules[unit->module].inputs)) {
     return 0;
   }
+  uint32_t cost = 0;
   if (*result != ATTEST_OK) return 1; /* a batch ends with the first error */
   if (sample && unit->module == CONTROLLER) {
     *result = (uint32_t)sample->set_timestamp_sample(unit->self, timed.timestamp_sample);
   }
   if (*result == ATTEST_OK) {
+    if (COUNTS) cost_begin();
     *result = (uint32_t)module_step(unit->module, unit->self, &timed.in, &unit->out);
+    if (COUNTS) cost = cost_end();
   }
   put(&unit->out, modules[unit->module].outputs);
+  if (COUNTS) put_number(cost);
+  if (COUNTS) put_number(stack_used());
   return 1;
 }
 
@@ -139,7 +152,8 @@ static int serve_steps(const header* head, instance* unit) {
   memcpy(answer + at, &result, sizeof result);
   if (head->kind == BATCH) {
     memcpy(answer + at + sizeof result, &done, sizeof done);
-    answer_size = at + sizeof result + sizeof done + done * modules[unit->module].outputs;
+    answer_size = at + sizeof result + sizeof done;
+    answer_size += done * (modules[unit->module].outputs + COST_SIZE);
   }
   return 1;
 }
@@ -224,6 +238,7 @@ int program_greet(const char* frames) {
   put_member("version", attest_unit_v1()->version);
   put_member("frames", frames);
   if (PROGRAM_BATCH) put_text(",\"batch\":true");
+  if (COUNTS) put_text(COST_OF(PROGRAM_CLOCK_HZ));
   put_list("profiles");
   for (size_t i = 0; i < sizeof profiles / sizeof profiles[0]; ++i) {
     if (supports(profiles[i])) put_word(profiles[i], strlen(profiles[i]));

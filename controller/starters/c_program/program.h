@@ -23,6 +23,20 @@ int connection_read(void* to, size_t size);
 /* Sends the handshake or a complete answer. */
 void connection_write(const void* from, size_t size);
 
+/* ---- the cost of a step ----------------------------------------------------------------------*/
+
+/* Only with -DPROGRAM_CLOCK_HZ=<frequency>, for you to implement: ../cortex_m/start.c is an
+ * example. The program then reports what each step costs. */
+
+/* Called before a step. */
+void cost_begin(void);
+
+/* Called after the step. Returns the cycles since cost_begin(), of that frequency. */
+uint32_t cost_end(void);
+
+/* The largest size of the stack until now, in bytes. 0 if it is not measured. */
+uint32_t stack_used(void);
+
 /* ---- the program -----------------------------------------------------------------------------*/
 
 /* Answers the first line of attest. `frames` is "binary" or "shared". Returns 0 if the connection

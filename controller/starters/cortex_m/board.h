@@ -3,12 +3,7 @@
 #ifndef BOARD_H
 #define BOARD_H
 
-#include <stdint.h>
-
 /* Reports a fault and stops. Of the connection. */
 _Noreturn void board_fail(const char* reason);
-
-/* The largest size of the stack until now, in bytes. */
-uint32_t board_stack_used(void);
 
 #endif /* BOARD_H */

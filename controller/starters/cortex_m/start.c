@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "board.h"
+#include "program.h"
 
 /* From board.ld. */
 extern uint32_t data_in_rom[], data_begin[], data_end[], bss_begin[], bss_end[], heap_begin[],
@@ -22,10 +23,32 @@ static inline void paint_stack(void) {
   for (uint32_t* word = stack_begin; word < used - 16; ++word) *word = PAINT;
 }
 
-uint32_t board_stack_used(void) {
+uint32_t stack_used(void) {
   const uint32_t* word = stack_begin;
   while (*word == PAINT) ++word;
   return (uint32_t)((const char*)stack_end - (const char*)word);
+}
+
+/* ---- the cost of a step, counted by SysTick, which every Cortex-M has -------------------------*/
+
+static struct {
+  volatile uint32_t control, reload, value; /* counts down, 24 bits */
+}* const systick = (void*)0xe000e010u;
+
+static volatile uint32_t wraps;
+
+static void on_wrap(void) { ++wraps; }
+
+void cost_begin(void) {
+  wraps = 0;
+  systick->reload = 0xffffff;
+  systick->value = 0;   /* any value: it begins at `reload` */
+  systick->control = 7; /* runs, with an interrupt at a wrap, on the clock of the processor */
+}
+
+uint32_t cost_end(void) {
+  systick->control = 4; /* stops, so that `wraps` and `value` belong together */
+  return (wraps << 24) + (systick->reload - systick->value);
 }
 
 /* ---- the heap of malloc(), from the end of the variables to the stack ------------------------*/
@@ -58,7 +81,9 @@ __attribute__((section(".vectors"), used)) static const struct {
   uint32_t* stack;
   void (*reset)(void);
   void (*faults[5])(void); /* NMI, hard fault, memory, bus, usage */
-} vectors = {stack_end, reset, {fault, fault, fault, fault, fault}};
+  void (*others[8])(void);
+  void (*systick)(void);
+} vectors = {stack_end, reset, {fault, fault, fault, fault, fault}, {0}, on_wrap};
 
 __attribute__((noinline)) static void start(void) {
   paint_stack();
