@@ -153,7 +153,10 @@ class Board:
 
 def serve(board: Board) -> None:
     """Passes the requests of attest to the board, until attest closes stdin."""
-    answer = board.send(sys.stdin.buffer.readline())
+    hello = sys.stdin.buffer.readline()
+    if not hello:
+        return
+    answer = board.send(hello)
     while not answer.endswith(b"\n"):
         answer += board.more()
     write(answer)
