@@ -95,6 +95,11 @@ void add_vectors(const CommandLine& line) {
                    "Write no files; report vectors so near to a threshold of the law that correct "
                    "ports may differ");
   lint.excludes(folder);
+  command
+      .flag("-v,--verbose", options->verbose,
+            "With --lint, for each profile and decision of the law: report the vectors on and next "
+            "to the threshold, and exit with 1 if one is missing")
+      .needs(lint);
   command.option("--format", options->format, "Format of the files: `csv` or `mat` (MATLAB)")
       .type("FORMAT")
       .shows_default()
@@ -120,7 +125,9 @@ void add_vectors(const CommandLine& line) {
        {"attest vectors ours --from-log flight.ulg --from 10 --to 20",
         "make a case from ten seconds of a flight, in the suite `ours`"},
        {"attest vectors --lint",
-        "report vectors for which rounding decides at a threshold of the law"}});
+        "report vectors for which rounding decides at a threshold of the law"},
+       {"attest vectors --lint --verbose",
+        "report also which thresholds have no vector on them or next to them"}});
   command.runs(options, vectors_command);
 }
 

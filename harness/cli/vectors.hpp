@@ -16,6 +16,7 @@ struct VectorOptions {
   std::string fixed_step;  // a rate [Hz]; empty: no fixed step
   std::vector<std::string> parameters;
   bool lint = false;
+  bool verbose = false;  // the lint looks for cases on and next to each threshold, too
   // If not empty: the command makes a case from this log. The times are from the first step in the
   // log.
   std::string from_log;

@@ -120,7 +120,8 @@ void HuntTrace::note(const Trace& part) {
     if (meter_) {
       const Margins& margins = meter_->step(changes.take_until(tick), sample);
       for (std::size_t i = 0; i < decision_count; ++i) {
-        meets_->set(i * 8 + nearness(static_cast<Decision>(i), margins.of[i].distance));
+        const auto decision = static_cast<Decision>(i);
+        meets_->set(i * 8 + nearness(decision, margins[decision].distance));
       }
     }
     for (std::size_t i = 0; i < outputs_.size() && i < 64; ++i) {

@@ -19,18 +19,20 @@ double from_opposite(const mc_att_control::Vector3<double>& axis) {
   return std::numbers::pi - std::atan2(std::hypot(axis[0], axis[1]), axis[2]);
 }
 
-// The distance [rad] of an angle from the nearer of pi and -pi.
-double from_half_turn(double angle) { return std::abs(std::numbers::pi - std::abs(angle)); }
+// The distance [rad] of an angle from the nearer of pi and -pi: negative next to -pi.
+double from_half_turn(double angle) {
+  return std::copysign(std::numbers::pi - std::abs(angle), angle);
+}
 
 // Notes where a rotation is half a turn: its sign, and so the shorter way, is arbitrary there.
 void note_half_turn(const Q& rotation, MarginNotes& notes) {
-  notes.note(Decision::shorter_rotation, std::abs(rotation[0]) / rotation.norm());
+  notes.note(Decision::shorter_rotation, rotation[0] / rotation.norm());
 }
 
 // Notes whether a yaw rate is taken as 0. A rate of exactly 0 is the same in every port.
 void note_yaw_rate(double rate, MarginNotes& notes) {
   if (rate == 0) return;
-  notes.note(Decision::yaw_lock, std::abs(std::abs(rate) / double(cascade::epsilon) - 1));
+  notes.note(Decision::yaw_lock, std::abs(rate) / double(cascade::epsilon) - 1);
 }
 
 struct NotingAttitudeLaw : cascade::AttitudeStages<double> {
@@ -43,14 +45,16 @@ struct NotingAttitudeLaw : cascade::AttitudeStages<double> {
     constexpr double almost_one = 0.999989986f;
     const bool opposite = Law::is_opposite(tilt);
     const double largest = std::max(std::abs(tilt[1]), std::abs(tilt[2]));
-    notes->note(Decision::opposite_thrust, std::abs(largest - almost_one));
+    notes->note(Decision::opposite_thrust, largest - almost_one);
     if (!opposite) notes->note(Decision::tilt_axis, 2 * std::abs(std::asin(tilt[0])));
     return opposite;
   }
   Q weighted_yaw(double w, double z, double weight) const {
     // With less weight than this, a whole turn of yaw is within tolerance.
     constexpr double some = 1e-6;
-    if (weight > some) notes->note(Decision::yaw_wrap, 2 * std::abs(std::asin(w)));
+    if (weight > some) {
+      notes->note(Decision::yaw_wrap, std::copysign(2 * std::abs(std::asin(w)), z));
+    }
     return Law::weighted_yaw(w, z, weight);
   }
   Q error(const Q& q_WB, const Q& target) const {
@@ -81,12 +85,12 @@ struct NotingSticks : cascade::StickStages<double> {
     const double pitch = std::asin(2 * (q[0] * q[2] - q[1] * q[3]));
     constexpr double near_pole = 0.001f;
     const double from_pole = std::numbers::pi / 2 - std::abs(pitch);
-    notes->note(Decision::heading_pole, std::abs(from_pole - near_pole));
+    notes->note(Decision::heading_pole, from_pole - near_pole);
     return Law::heading(q, law);
   }
   bool is_lowest_throttle(double throttle, const Gains& gains) const {
     if (!gains.yaws_at_lowest_throttle) {
-      notes->note(Decision::lowest_throttle, std::abs(throttle - double(-0.9f)));
+      notes->note(Decision::lowest_throttle, throttle - double(-0.9f));
     }
     return Law::is_lowest_throttle(throttle, gains);
   }
@@ -97,7 +101,7 @@ struct NotingSticks : cascade::StickStages<double> {
     constexpr double converged_rad = 0.0174532924f;
     if (std::isfinite(unaided) && !state.lost) {
       notes->note(Decision::heading_wrap, from_half_turn(error));
-      notes->note(Decision::convergence, std::abs(std::abs(change) - converged_rad));
+      notes->note(Decision::convergence, std::abs(change) - converged_rad);
     }
     return Law::correct_yaw(state, heading, unaided, dt_s, law);
   }
@@ -122,7 +126,7 @@ struct NotingSticks : cascade::StickStages<double> {
   }
   // The quaternion of a yaw changes its sign where the yaw wraps at +-pi.
   Q desired_attitude(const Q& yaw, const Q& tilt) const {
-    notes->note(Decision::heading_wrap, 2 * std::abs(std::asin(yaw[0])));
+    notes->note(Decision::heading_wrap, std::copysign(2 * std::abs(std::asin(yaw[0])), yaw[3]));
     return Law::desired_attitude(yaw, tilt);
   }
 };
@@ -135,7 +139,7 @@ struct NotingAttitudeStep : cascade::AttitudeStepStages<double> {
     const auto gains = Law::gains(parameters);
     const double weight = gains.attitude.yaw_weight;
     // A weight of exactly 0 is the same in every port.
-    if (weight != 0) notes->note(Decision::yaw_weight, std::abs(weight - double(1e-4f)));
+    if (weight != 0) notes->note(Decision::yaw_weight, weight - double(1e-4f));
     return gains;
   }
   bool is_spooled(std::uint64_t now_us, const Status& status, double spoolup_us) const {
@@ -143,7 +147,7 @@ struct NotingAttitudeStep : cascade::AttitudeStepStages<double> {
     // The time since arming is an integer [us], so every port compares it with a limit of exactly 0
     // in the same way.
     if (status.armed != 0 && spoolup_us != 0) {
-      notes->note(Decision::spool_up, std::abs(armed_us - spoolup_us) * 1e-6);
+      notes->note(Decision::spool_up, (armed_us - spoolup_us) * 1e-6);
     }
     return Law::is_spooled(now_us, status, spoolup_us);
   }

@@ -25,12 +25,12 @@ struct NotingStep : mc_att_control::StepStages<double> {
   bool sticks_beyond(const decltype(Topics::manual)& manual, double threshold) const {
     const double x = std::abs(double(manual.x)), y = std::abs(double(manual.y));
     // One stick beyond the threshold is enough, so the larger decides.
-    notes->note(Decision::rattitude, std::abs(std::max(x, y) - threshold));
+    notes->note(Decision::rattitude, std::max(x, y) - threshold);
     return mc_att_control::StepStages<double>::sticks_beyond(manual, threshold);
   }
   float battery_factor(const Topics& topics, const mc_att_control::Gains<double>& gains,
                        mc_att_control::Profile profile) const {
-    const double scale = std::abs(double(topics.battery_scale));
+    const auto scale = double(topics.battery_scale);
     // Every port takes a scale of exactly 0 as no scaling.
     if (gains.battery_scaling && scale != 0) notes->note(Decision::battery_scale, scale);
     return mc_att_control::StepStages<double>::battery_factor(topics, gains, profile);
@@ -55,14 +55,15 @@ struct NotingAttitude : mc_att_control::AttitudeStages<double> {
     // With less weight than this, a whole turn of yaw is within tolerance.
     constexpr double some = 1e-6;
     if (weight > some) {
-      notes->note(Decision::yaw_wrap, std::numbers::pi - std::abs(error / weight));
+      const double angle = error / weight;
+      notes->note(Decision::yaw_wrap, std::copysign(std::numbers::pi - std::abs(angle), angle));
     }
     return error;
   }
   Vector3d direct_error(const Matrix3d& R_WB, const Matrix3d& R_WD) const {
     const auto q =
         mc_att_control::quaternion_of(mc_att_control::ordered::transpose_product(R_WB, R_WD));
-    notes->note(Decision::shorter_rotation, std::abs(q.w()));
+    notes->note(Decision::shorter_rotation, q.w());
     return Law::direct_error(R_WB, R_WD);
   }
 };
@@ -76,8 +77,7 @@ struct NotingRate : mc_att_control::RateStages<double> {
 
   bool may_integrate(double thrust_sp, const mc_att_control::MotorLimits& limits) const {
     if (!limits.lower && !limits.upper) {
-      notes->note(Decision::thrust_gate,
-                  std::abs(thrust_sp - double(mc_att_control::takeoff_thrust)));
+      notes->note(Decision::thrust_gate, thrust_sp - double(mc_att_control::takeoff_thrust));
     }
     return Law::may_integrate(thrust_sp, limits);
   }
@@ -93,7 +93,7 @@ struct NotingRate : mc_att_control::RateStages<double> {
       // If all gates are open, the nearest to closing decides. Otherwise all closed gates have to
       // open, and the farthest from opening decides.
       const double least = *std::min_element(gates.begin(), gates.end());
-      notes->note(Decision::integrator_gate, std::abs(least));
+      notes->note(Decision::integrator_gate, least);
     }
     return Law::integrate_axis(integral, control, thrust_sp, growth, frozen);
   }
@@ -104,14 +104,23 @@ struct NotingRecovery : mc_att_control::RecoveryStages<double> {
   MarginNotes* notes;
 
   bool latch(bool recovering, double tilt_rad) const {
-    const double threshold = mc_att_control::radians(recovering ? 5.0 : 30.0);
-    notes->note(Decision::recovery_latch, std::abs(tilt_rad - threshold));
+    notes->note(recovering ? Decision::recovery_end : Decision::recovery_begin,
+                tilt_rad - mc_att_control::radians(recovering ? 5.0 : 30.0));
     return Law::latch(recovering, tilt_rad);
+  }
+  Vector3d optimal_rates(const mc_att_control::RecoveryTilt<double>& tilt) const {
+    // At exactly half a turn the law takes a fixed axis.
+    if (const double from_half_turn = std::numbers::pi - tilt.angle_rad; from_half_turn > 0) {
+      notes->note(Decision::tilt_axis, from_half_turn);
+      // The direction is folded to 0 to pi/2. The sign of roll tells on which side it was.
+      notes->note(Decision::recovery_side, std::copysign(tilt.direction_rad, tilt.signs[0]));
+    }
+    return Law::optimal_rates(tilt);
   }
   Vector3d quaternion_rates(const Quaternion<double>& q_WB, const Quaternion<double>& q_WD,
                             const AttitudeGains<double>& gains) const {
     const Quaternion<double> q = mc_att_control::product(mc_att_control::conjugate(q_WD), q_WB);
-    notes->note(Decision::recovery_rotation, std::abs(q.w()));
+    notes->note(Decision::recovery_rotation, q.w());
     return Law::quaternion_rates(q_WB, q_WD, gains);
   }
 };
@@ -131,7 +140,7 @@ void note_norm(const float (&q)[4], MarginNotes& notes) {
   for (const float component : q) squared += double(component) * double(component);
   // All ports treat zeros and non-finite values the same way.
   if (squared == 0 || !std::isfinite(squared)) return;
-  notes.note(Decision::quaternion_norm, std::abs(std::sqrt(squared) - 1));
+  notes.note(Decision::quaternion_norm, std::sqrt(squared) - 1);
 }
 
 using LawMeter = UnitMeter<mc_att_control::McAttControl<double, NotingController>, NotingController,

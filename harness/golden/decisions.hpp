@@ -18,7 +18,7 @@ namespace attest {
 
 enum class Decision {
   // Of the controller of v1.5.5 and v1.3.4; those with * of the cascade, too.
-  quaternion_norm,  // | |q| - 1 |: here a small distance is safe, a large one unsafe
+  quaternion_norm,  // |q| against 1: here a small distance is safe, a large one unsafe
   thrust_gate,      // thrust > 0.2
   // |u| < thrust, -0.3 < n < 0.3, -0.3 < u < 0.3 (u: control, n: next integral). If all hold, the
   // distance is that of the condition nearest to its limit. Otherwise it is that of the failed
@@ -31,8 +31,10 @@ enum class Decision {
   yaw_wrap,           // * the yaw error at +-pi
   tilt_axis,          // * the tilt error at 180 deg, where its axis is arbitrary
   battery_scale,      // * scale > 0
-  recovery_latch,     // tilt against 30 deg, then 5 deg: a tailsitter's recovery
-  recovery_rotation,  // q_e.w > 0 in the recovery
+  recovery_begin,     // tilt against 30 deg: a tailsitter's recovery
+  recovery_end,       // tilt against 5 deg
+  recovery_side,      // the direction of the tilt at 0 and +-pi, where roll and yaw change sign
+  recovery_rotation,  // q_e.w > 0 outside of a recovery
   // Of the mixer.
   mixer_limit,   // a rotor's output without yaw against 0 and 1
   mixer_branch,  // if outputs exceed only one end of 0..1: excess against room at the other end
@@ -70,23 +72,55 @@ double least_margin(Decision decision, std::optional<int> fraction_bits);
 struct Margin {
   double distance = std::numeric_limits<double>::infinity();  // infinite: never measured
   std::size_t tick = 0;
+
+  bool is_measured() const { return distance < std::numeric_limits<double>::infinity(); }
 };
 
 // Whether `one` is nearer to the decision than `other`: its distance is smaller; for
 // quaternion_norm, larger. False if `one` was never measured.
 bool is_nearer(Decision decision, const Margin& one, const Margin& other);
 
-// The nearest margin of each decision.
-struct Margins {
-  std::array<Margin, decision_count> of{};
+// Where a value is, seen from the threshold of a decision.
+enum class Side { below, above };
+inline constexpr std::array both_sides = {Side::below, Side::above};
 
-  const Margin& operator[](Decision decision) const {
-    return of[static_cast<std::size_t>(decision)];
+// The nearest margin of each decision on each side.
+class Margins {
+ public:
+  const Margin& at(Decision decision, Side side) const {
+    return nearest_[static_cast<std::size_t>(decision)][static_cast<std::size_t>(side)];
   }
+  const Margin& operator[](Decision decision) const;  // of the nearer side
   bool is_safe(Decision decision) const;
 
-  // Keeps `distance` if it is the nearest of its decision. A NaN is ignored.
-  void note(Decision decision, double distance, std::size_t tick);
+  // Keeps the distance of `from_threshold` (the value minus its threshold) if it is the nearest of
+  // its decision on its side. A value on the threshold counts as above it. A NaN is ignored.
+  void note(Decision decision, double from_threshold, std::size_t tick);
+  // The same for all margins of a tick.
+  void note(const Margins& at_tick, std::size_t tick);
+
+ private:
+  Margin& at(Decision decision, Side side) {
+    return nearest_[static_cast<std::size_t>(decision)][static_cast<std::size_t>(side)];
+  }
+
+  std::array<std::array<Margin, 2>, decision_count> nearest_{};
 };
+
+// The largest distance of a value that is on the threshold. Inputs can have the float of the
+// threshold itself. The distances of computed values are measured in double, where the float of the
+// threshold is some roundings away.
+double on_threshold(Decision decision);
+
+// A place where the suite needs a case: on the threshold at the level `exact`, and on each side,
+// within `near_margins` of its least_margin(), at the level `numeric`.
+enum class Place { below, on, above };
+inline constexpr std::array all_places = {Place::below, Place::on, Place::above};
+inline constexpr double near_margins = 30;
+
+std::string_view name_of(Place place);
+
+// Why no case can have a value there; empty if a case can.
+std::string_view reason_for_none(Decision decision, Place place);
 
 }  // namespace attest

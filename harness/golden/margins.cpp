@@ -46,10 +46,7 @@ Margins margins(const Trace& given, MarginMeter& meter) {
   PendingChanges changes(given.parameters);
   Margins all;
   for (std::size_t tick = 0; tick < given.samples.size(); ++tick) {
-    const Margins& at_tick = meter.step(changes.take_until(tick), given.samples[tick]);
-    for (std::size_t i = 0; i < decision_count; ++i) {
-      all.note(static_cast<Decision>(i), at_tick.of[i].distance, tick);
-    }
+    all.note(meter.step(changes.take_until(tick), given.samples[tick]), tick);
   }
   return all;
 }

@@ -19,7 +19,10 @@ struct MarginNotes {
   Margins margins;  // of tick `tick` alone
   std::size_t tick = 0;
 
-  void note(Decision decision, double distance) { margins.note(decision, distance, tick); }
+  // `from_threshold`: the value minus its threshold.
+  void note(Decision decision, double from_threshold) {
+    margins.note(decision, from_threshold, tick);
+  }
 };
 
 // Measures the margins of a module tick by tick, from its power-on state on.

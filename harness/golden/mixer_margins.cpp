@@ -16,9 +16,9 @@ struct NotingMixer : actuation::MixerStages<double> {
   explicit NotingMixer(MarginNotes* to) : notes(to) {}
 
   Fit fit(double min_out, double max_out, double thrust) const {
-    notes->note(Decision::mixer_limit, std::min(std::abs(min_out), std::abs(max_out - 1)));
+    for (const double beyond : {-min_out, max_out - 1}) notes->note(Decision::mixer_limit, beyond);
     const bool one_end = (min_out < 0) != (max_out > 1);
-    if (one_end) notes->note(Decision::mixer_branch, std::abs(min_out + max_out - 1));
+    if (one_end) notes->note(Decision::mixer_branch, max_out - min_out - 1);
     return Law::fit(min_out, max_out, thrust);
   }
   // Whether the flag is set depends on the rotor that is furthest out, not on the rotors' order.
@@ -29,7 +29,7 @@ struct NotingMixer : actuation::MixerStages<double> {
           without_yaw(rotor, c, fit.roll_pitch_scale) + c.yaw * rotor.yaw + c.thrust + fit.boost;
       beyond = std::max({beyond, -out, out - 1});
     }
-    notes->note(Decision::mixer_yaw, std::abs(beyond));
+    notes->note(Decision::mixer_yaw, beyond);
     return Law::yield_yaw(rotors, c, fit);
   }
 };

@@ -9,16 +9,14 @@
 namespace attest {
 namespace {
 
-// The distance of |value| from the threshold FLT_EPSILON, as a ratio.
-double from_epsilon(double value) {
-  return std::abs(std::abs(value) / double(cascade::epsilon) - 1);
-}
+// The distance of |value| from the threshold FLT_EPSILON, as a ratio: negative below it.
+double from_epsilon(double value) { return std::abs(value) / double(cascade::epsilon) - 1; }
 
 // The law treats non-finite values differently. A value beyond the largest float is finite in
 // double, but not in a float port.
 void note_overflow(double value, MarginNotes& notes) {
   constexpr double largest = std::numeric_limits<float>::max();
-  notes.note(Decision::overflow, std::abs(std::abs(value) / largest - 1));
+  notes.note(Decision::overflow, std::abs(value) / largest - 1);
 }
 
 struct NotingRateLaw : cascade::RateStages<double> {
@@ -57,7 +55,7 @@ struct NotingRateStep : cascade::RateStepStages<double> {
                        const decltype(attest_rate_inputs::battery_status)& sample) const {
     // Every port takes a scale of exactly 0 as no scaling.
     if (sample.connected != 0 && sample.scale != 0) {
-      notes->note(Decision::battery_scale, std::abs(double(sample.scale)));
+      notes->note(Decision::battery_scale, double(sample.scale));
     }
     return Law::battery_scale(before, sample);
   }

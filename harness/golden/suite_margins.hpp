@@ -1,9 +1,11 @@
-// The margins of a suite's numeric vectors (cases that are compared with a tolerance, at one rate):
-// their distances from the decisions of the law.
+// The margins of a suite's vectors (cases at one rate): their distances from the decisions of the
+// law.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "harness/casefile/select.hpp"
@@ -18,15 +20,31 @@ struct VectorMargin {
   Margin margin{};
 };
 
-struct SuiteMargins {
-  std::size_t vectors = 0;                             // measured
-  std::size_t not_measured = 0;                        // numeric vectors without a MarginMeter
-  std::array<VectorMargin, decision_count> nearest{};  // by decision
-  std::vector<VectorMargin> too_near;                  // unsafe; in the order of the cases
+// The vectors of a profile that are nearest to a decision.
+struct Approach {
+  VectorMargin on;            // among those for the exact level only
+  VectorMargin below, above;  // among the numeric ones, on each side
+
+  const VectorMargin& at(Place place) const {
+    return place == Place::on ? on : place == Place::below ? below : above;
+  }
+  // Whether a vector of the profile reaches the decision at all. If not, its law does not have it.
+  bool is_reached() const;
+  // Whether a vector is there: within on_threshold() or near_margins. REQUIRES: the decision of
+  // this Approach.
+  bool has(Decision decision, Place place) const;
 };
 
-// Measures the selected open-loop cases, without those for the exact level only. The result is
-// valid as long as `cases`.
+struct SuiteMargins {
+  std::size_t vectors = 0;                             // numeric vectors that were measured
+  std::size_t not_measured = 0;                        // numeric vectors without a MarginMeter
+  std::array<VectorMargin, decision_count> nearest{};  // of numeric vectors, by decision
+  std::vector<VectorMargin> too_near;                  // unsafe; in the order of the cases
+  // By profile and decision, without the laws alone: a port of a unit does not run their cases.
+  std::map<std::string, std::array<Approach, decision_count>> approaches;
+};
+
+// Measures the selected open-loop cases. The result is valid as long as `cases`.
 SuiteMargins suite_margins(const std::vector<SelectedCase>& cases);
 
 }  // namespace attest

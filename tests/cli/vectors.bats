@@ -44,6 +44,18 @@ READ
   has "numeric vectors, 0 too near to a decision"
 }
 
+@test "a threshold without vectors next to it is reported" {
+  make_suite
+  run "$ATTEST" --suite suite vectors --lint --verbose
+  [ "$status" -eq 1 ]
+  has "thrust gate           below           MISSING"
+  has "attitude/roll@50hz at tick 0: MISSING, this is too far"
+  run "$ATTEST" --suite suite vectors --lint
+  [ "$status" -eq 0 ]
+  run "$ATTEST" vectors --verbose
+  [ "$status" -eq 2 ]
+}
+
 @test "a vector that comes too near is refused, with the tick and the way out" {
   make_suite
   cat >>suite/cases/px4-v1.5.5/attitude/roll.toml <<'T'

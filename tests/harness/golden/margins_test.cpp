@@ -35,6 +35,18 @@ TEST(Margins, TheThrustGate) {
   EXPECT_EQ(found[Decision::thrust_gate].tick, 4u);
 }
 
+TEST(Margins, OfEachSideOfAThreshold) {
+  const Margins found = margins_of(
+      "[vehicle_attitude_setpoint]\nthrust = { signal = \"samples\", times_ticks = [0, 4, 6], "
+      "values "
+      "= [0.5, 0.1, 0.23] }\n");
+  EXPECT_NEAR(found.at(Decision::thrust_gate, Side::below).distance, 0.1, 1e-6);
+  EXPECT_EQ(found.at(Decision::thrust_gate, Side::below).tick, 4u);
+  EXPECT_NEAR(found.at(Decision::thrust_gate, Side::above).distance, 0.03, 1e-6);
+  EXPECT_EQ(found.at(Decision::thrust_gate, Side::above).tick, 6u);
+  EXPECT_EQ(found[Decision::thrust_gate].tick, 6u);
+}
+
 Margins mixer_margins_of(const std::string& controls) {
   const std::string definition = "R: 4x 10000 10000 10000 0";
   return margins_of(
@@ -46,6 +58,13 @@ TEST(Margins, OfAMixerWithinItsLimits) {
   EXPECT_NEAR(found[Decision::mixer_limit].distance, 0.25, 1e-9);
   EXPECT_NEAR(found[Decision::mixer_yaw].distance, 0.25, 1e-9);
   EXPECT_TRUE(std::isinf(found[Decision::mixer_branch].distance));
+}
+
+// With roll alone, one end is beyond its limit by 0.4 - 0.3, and the other has room for 0.3.
+TEST(Margins, AMixersBranchIsTheExcessAgainstTheRoom) {
+  const Margins found = mixer_margins_of("\"control[0]\" = 0.5656854\n\"control[3]\" = 0.3\n");
+  EXPECT_NEAR(found.at(Decision::mixer_branch, Side::below).distance, 0.2, 1e-6);
+  EXPECT_FALSE(found.at(Decision::mixer_branch, Side::above).is_measured());
 }
 
 // Roll is fitted so that the lowest rotor is at its limit. Rounding decides whether it is beyond.
@@ -86,7 +105,14 @@ TEST(Margins, SticksAndTheRecovery) {
                    .is_safe(Decision::rattitude));
   EXPECT_FALSE(margins_of("[parameters]\nVT_OPT_RECOV_EN = 1\n[control_state]\nq = { tilt_deg = "
                           "30.0000001 }\n")
-                   .is_safe(Decision::recovery_latch));
+                   .is_safe(Decision::recovery_begin));
+  const std::string recovering =
+      "[parameters]\nVT_OPT_RECOV_EN = 1\n[control_state]\nq = { tilt_deg = ";
+  const Margins side = margins_of(recovering + "40, azimuth_deg = 90.001 }\n");
+  EXPECT_NEAR(side[Decision::recovery_side].distance, 0.001 * 3.14159265 / 180, 1e-6);
+  EXPECT_FALSE(margins_of(recovering + "179.99 }\n").is_safe(Decision::tilt_axis));
+  EXPECT_TRUE(margins_of("[parameters]\nVT_OPT_RECOV_EN = 1\n[control_state]\nq = [0, 1, 0, 0]\n")
+                  .is_safe(Decision::tilt_axis));
 }
 
 // 750 LSB of 20 bits are more than the margin that floats need; 750 LSB of 40 bits are less.
