@@ -44,11 +44,18 @@ READ
   has "numeric vectors, 0 too near to a decision"
 }
 
+@test "each threshold of the law has a vector on it, and numeric ones close to it on both sides" {
+  nm "$ATTEST" | grep -q __asan_init && skip "measured without sanitizers"
+  run "$ATTEST" vectors --lint --verbose
+  [ "$status" -eq 0 ]
+  has "0 places without a vector"
+}
+
 @test "a threshold without vectors next to it is reported" {
   make_suite
   run "$ATTEST" --suite suite vectors --lint --verbose
   [ "$status" -eq 1 ]
-  has "thrust gate           below           MISSING"
+  has "thrust gate           below            MISSING"
   has "attitude/roll@50hz at tick 0: MISSING, this is too far"
   run "$ATTEST" --suite suite vectors --lint
   [ "$status" -eq 0 ]
