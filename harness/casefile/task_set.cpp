@@ -13,6 +13,8 @@ namespace {
 
 Nanoseconds micros(double us) { return Nanoseconds(std::llround(us * 1000)); }
 
+constexpr Nanoseconds least_execution = std::chrono::microseconds(1);
+
 // One number, or several that successive jobs use in turn. At least 1 us, because timestamps are
 // in microseconds and each job of the unit needs its own.
 std::vector<Nanoseconds> parse_execution(const TomlTable& table) {
@@ -43,11 +45,14 @@ void parse_release(const TomlTable& table, ScheduledTask& task) {
 
 constexpr std::int64_t most_priority = 1'000'000;
 
-ScheduledTask parse_task(const TomlTable& table, const std::string& name) {
+// `measured`: the execution time, in place of that of the file.
+ScheduledTask parse_task(const TomlTable& table, const std::string& name,
+                         std::optional<Nanoseconds> measured) {
   ScheduledTask task;
   task.name = name;
   if (!table.has("trigger")) parse_release(table, task);
-  task.execution = parse_execution(table);
+  if (!measured || table.has("execution_us")) task.execution = parse_execution(table);
+  if (measured) task.execution = {std::max(*measured, least_execution)};
   const std::int64_t priority = table.integer("priority");
   if (priority < -most_priority || priority > most_priority) {
     table.error("priority", fmt::format("must be from {} to {}", -most_priority, most_priority));
@@ -105,16 +110,30 @@ bool is_misspelt(const TomlTable& tasks, const std::string& meant) {
   return misspelt;
 }
 
+// The measured execution time of the task `name`; empty if it is no unit.
+std::optional<Nanoseconds> measured_of(const UnitExecution& measured, const std::string& name,
+                                       const TomlTable& tasks) {
+  const bool is_cascade = tasks.has("attitude_unit");
+  Module module = is_cascade ? Module::rate_unit : Module::mc_att_control;
+  if (name == "attitude_unit") module = Module::attitude_unit;
+  if (name != "unit" && name != "attitude_unit") return std::nullopt;
+  if (const auto found = measured.find(module); found != measured.end()) return found->second;
+  tasks.error(name, fmt::format("no execution time of the {} was measured", info_of(module).title));
+  return std::nullopt;
+}
+
 }  // namespace
 
-Result<TaskSet> read_task_set(const std::filesystem::path& path) {
+Result<TaskSet> read_task_set(const std::filesystem::path& path,
+                              const std::optional<UnitExecution>& measured) {
   const auto file = TomlFile::read(path);
   if (!file) return tl::unexpected(file.error());
   const TomlTable root = file->root();
   const TomlTable tasks = root.table("task");
   TaskSet set;
   for (const std::string& name : tasks.keys()) {
-    set.tasks.push_back(parse_task(tasks.table(name), name));
+    const auto execution = measured ? measured_of(*measured, name, tasks) : std::nullopt;
+    set.tasks.push_back(parse_task(tasks.table(name), name, execution));
   }
   is_misspelt(tasks, "estimator");
   is_misspelt(tasks, "attitude_unit");

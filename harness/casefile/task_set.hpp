@@ -3,12 +3,14 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <vector>
 
 #include "harness/core/fixed_priority.hpp"
 #include "harness/core/loop_rate.hpp"
 #include "harness/core/result.hpp"
+#include "harness/trace/module.hpp"
 
 namespace attest {
 
@@ -25,8 +27,16 @@ struct TaskSet {
   }
 };
 
+// The execution times of the units' jobs, where they were measured.
+using UnitExecution = std::map<Module, Nanoseconds>;
+
+// With `measured`, the tasks of the units take their execution times from it, and need none in the
+// file: `unit` is the controller, or the rate unit if there is a task `attitude_unit`.
+//
 // Errors, with the file and, if known, the line: syntax, unknown keys, values out of range; no task
-// `unit`; a `trigger` where SCHEMA.md does not allow it; a rate unit slower than its attitude unit.
-Result<TaskSet> read_task_set(const std::filesystem::path& path);
+// `unit`; a `trigger` where SCHEMA.md does not allow it; a rate unit slower than its attitude unit;
+// `measured` lacks a unit.
+Result<TaskSet> read_task_set(const std::filesystem::path& path,
+                              const std::optional<UnitExecution>& measured = {});
 
 }  // namespace attest

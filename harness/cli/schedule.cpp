@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "harness/casefile/parse_limits.hpp"
 #include "harness/casefile/stimulus.hpp"
@@ -7,6 +8,9 @@
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/core/file.hpp"
+#include "harness/core/json_reader.hpp"
+#include "harness/core/json_text.hpp"
 #include "harness/loop/case_timing.hpp"
 #include "harness/loop/scheduled_timing.hpp"
 #include "harness/report/schedule_text.hpp"
@@ -17,6 +21,7 @@ namespace {
 
 struct ScheduleOptions {
   std::string tasks;  // file
+  std::string times;  // file of `attest time --json`; empty: the execution times of the task file
   std::string case_name = "flight/tilt_step_30";
   std::string vehicle, plant;
   HostOptions host;
@@ -51,8 +56,39 @@ struct SchedulePlan {
   TimingFile scheduled;
 };
 
+// The slowest step of each module. Errors: no report of `attest time`; it counts instructions,
+// which have no duration.
+Result<std::optional<UnitExecution>> measured_times(const std::string& file) {
+  if (file.empty()) return std::optional<UnitExecution>();
+  const auto text = read_file(file);
+  if (!text) return tl::unexpected(text.error());
+  const auto json = parse_json(*text, file);
+  if (!json) return tl::unexpected(json.error());
+  std::string error;
+  JsonReader report(*json, error);
+  if (!json->is_object() || !report.has("schema") || report.text("schema") != "attest-time-1") {
+    return fail_at(file, "is no report of `attest time --json`");
+  }
+  constexpr std::int64_t most_ns = 3'600'000'000'000;
+  UnitExecution measured;
+  for (const auto& [name, figures] : report.member("modules").items()) {
+    const auto module = module_named(name);
+    if (!module) report.wrong("modules", fmt::format("has the unknown module {}", name));
+    JsonReader reader(figures, error);
+    if (!reader.has("max_ns")) {
+      return fail_at(file, "has no times: its port counts instructions, which have no duration");
+    }
+    const Nanoseconds slowest(reader.integer("max_ns", 0, most_ns));
+    if (module) measured[*module] = slowest;
+  }
+  if (!error.empty()) return fail_at(file, error);
+  return std::optional(std::move(measured));
+}
+
 Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder& suite) {
-  auto set = read_task_set(options.tasks);
+  const auto measured = measured_times(options.times);
+  if (!measured) return tl::unexpected(measured.error());
+  auto set = read_task_set(options.tasks, *measured);
   if (!set) return tl::unexpected(set.error());
   const auto chosen =
       choose_flight(options.case_name, set->rate(), options.vehicle, options.plant, suite);
@@ -89,9 +125,9 @@ Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder
 int schedule_command(const ScheduleOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
-  const auto checked =
-      check_outputs({options.record_timing},
-                    {options.host.port, {options.tasks, options.case_name}}, globals.suite);
+  const auto checked = check_outputs(
+      {options.record_timing},
+      {options.host.port, {options.tasks, options.times, options.case_name}}, globals.suite);
   if (!checked) return report_error(checked.error());
   auto timing = AtomicFile::open(options.record_timing);
   if (!timing) return report_error(timing.error());
@@ -131,6 +167,11 @@ void add_schedule(const CommandLine& line) {
   command.option("tasks", options->tasks, "The task file, with [task.unit] and the other tasks")
       .type("TASKS.toml")
       .required();
+  command
+      .option("--times", options->times,
+              "Report of `attest time --json`: the slowest steps are the execution times of the "
+              "units, in place of `execution_us`")
+      .type("F.json");
   add_case(command, options->case_name);
   add_plant(command, options->vehicle, options->plant);
   add_port(command, options->host);
@@ -141,7 +182,9 @@ void add_schedule(const CommandLine& line) {
       .group(option_group::reports);
   add_timeout(command, options->host.timeout_s);
   command.examples({{"attest schedule TASKS.toml --port lib:./libmine.so",
-                     "print the worst response times, and fly with the delays"}});
+                     "print the worst response times, and fly with the delays"},
+                    {"attest schedule TASKS.toml --times t.json",
+                     "take the execution time of the units from `attest time --json t.json`"}});
   command.runs(options, schedule_command);
 }
 

@@ -190,8 +190,8 @@ Result<void> run_all(const StressPlan& plan, const StressOptions& options, const
     }
     std::fflush(stdout);
   }
-  if (const auto note = note_on_units(run); !note.empty() && !globals.quiet) {
-    fmt::print("note: {}\n", note);
+  for (const std::string& note : {note_on_units(run), note_on_cost(run)}) {
+    if (!note.empty() && !globals.quiet) fmt::print("note: {}\n", note);
   }
   run.interrupted = interrupted();
   return {};

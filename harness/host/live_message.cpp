@@ -62,7 +62,8 @@ bool is_sane(const LiveTick& tick, Nanoseconds longest) {
          in_flight(tick.deadline) && in_flight(tick.start) &&
          (in_flight(tick.sampled) || is_never(tick.sampled)) && in_flight(tick.begins) &&
          in_flight(tick.finish) && in_flight(tick.elapsed) && in_flight(tick.cpu) &&
-         (in_flight(tick.commanded) || is_never(tick.commanded));
+         (in_flight(tick.commanded) || is_never(tick.commanded)) && tick.cost >= -1 &&
+         tick.cost <= UINT32_MAX && is_never(tick.counted);
 }
 
 // `most`: the most ticks that the unit can have.

@@ -61,6 +61,8 @@ class UnitDriver {
   std::optional<PortFault> batch(std::size_t tick, std::span<const ParameterChange> changes,
                                  std::span<Sample> samples);
 
+  std::span<const StepCost> costs() const { return unit_.costs(); }  // of the last step or batch
+
  private:
   static constexpr std::size_t margin = 64;
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "harness/casefile/case.hpp"
@@ -57,6 +58,7 @@ class UnitTask {
 
   // Of the last tick.
   const Sample& sample() const { return sample_; }
+  std::span<const StepCost> costs() const { return driver_.costs(); }
   const std::vector<ParameterChange>& changes() const { return changes_; }
   const MotorCommands& commands() const { return actuators_.commands(); }
   const Saturation& saturation() const { return actuators_.saturation(); }

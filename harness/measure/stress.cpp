@@ -41,6 +41,17 @@ Histogram histogram_of(const std::vector<LiveTick>& ticks, TimeOfTick time) {
   return histogram;
 }
 
+// Sets LiveTick::counted, if the port counts costs that have a duration.
+void set_counted(const std::optional<CostCounter>& counter, LiveUnitRecord& unit) {
+  const auto unit_ns = counter ? counter->unit_ns() : std::nullopt;
+  if (!unit_ns) return;
+  for (LiveTick& tick : unit.ticks) {
+    // The slowest clock and the largest count exceed the range of Nanoseconds.
+    const double ns = static_cast<double>(tick.cost) * *unit_ns;
+    if (tick.cost >= 0) tick.counted = nanoseconds(ns / 1000);
+  }
+}
+
 Nanoseconds longest_gap(const std::vector<LiveTick>& ticks) {
   Nanoseconds longest{0};
   for (std::size_t i = 1; i < ticks.size(); ++i) {
@@ -103,6 +114,8 @@ TimelineLimits limits_of(const RealtimeBudget& budget) {
 
 Result<StressResults> judge_live(const StressTask& task, const Percentiles& idle,
                                  LiveFlight flight) {
+  set_counted(task.port.cost, flight.unit);
+  if (flight.attitude_unit) set_counted(task.port.cost, *flight.attitude_unit);
   StressResults results;
   const auto add = [&]() -> StressResult& {
     results.emplace_back().result = result_for(task.the_case, task.configuration);

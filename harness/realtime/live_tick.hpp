@@ -23,6 +23,8 @@ struct LiveTick {
   bool waited = false;        // the step gave up the CPU by itself: it slept, or waited for a lock
   std::uint32_t skipped = 0;  // releases skipped between this tick and the next
   Nanoseconds commanded{-1};  // LoopTick::commanded; -1: its outputs were never used
+  std::int64_t cost = -1;     // of the unit's step, as the port counts it; -1: it does not count
+  Nanoseconds counted{-1};    // `cost` as a time, which the judge sets; -1: it has no duration
 
   Nanoseconds latency() const { return start - release; }
   Nanoseconds response() const { return finish - release; }
@@ -31,8 +33,12 @@ struct LiveTick {
 
   // The CPU time of the step, so that preemption does not count. For a step that waits by itself it
   // is the elapsed time, because such waiting is the port's own delay. The two clocks are read one
-  // after the other, so `cpu` can be slightly above `elapsed`.
-  Nanoseconds execution() const { return waited ? elapsed : std::min(cpu, elapsed); }
+  // after the other, so `cpu` can be slightly above `elapsed`. A time that the port counts takes
+  // the place of both.
+  Nanoseconds execution() const {
+    if (counted >= Nanoseconds(0)) return counted;
+    return waited ? elapsed : std::min(cpu, elapsed);
+  }
 };
 
 }  // namespace attest

@@ -130,6 +130,7 @@ Nanoseconds LiveUnit::tick(LiveTick due) {
   record_.fault = task_.step(ticks_);
   const Nanoseconds after = clock_.now(), cpu_after = thread_cpu_time();
   if (record_.fault) return after;
+  if (const auto costs = task_.costs(); !costs.empty()) due.cost = costs.front().cost;
   send(after);
   due.finish = clock_.now();
   due.elapsed = after - before;

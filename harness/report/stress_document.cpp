@@ -292,8 +292,8 @@ Document stress_document(const StressRun& run) {
   if (run.interrupted) document.head.sentence += "; interrupted";
   document.facts = facts_of(run);
   document.tables = {rates_table(run)};
-  if (std::string note = note_on_units(run); !note.empty()) {
-    document.notes.push_back({std::move(note)});
+  for (std::string note : {note_on_units(run), note_on_cost(run)}) {
+    if (!note.empty()) document.notes.push_back({std::move(note)});
   }
   for (const StressResult& stress : run.results) {
     const VectorResult& result = stress.result;

@@ -44,6 +44,8 @@ Document stress_document(const StressRun& run);
 // A note on the unit of the cascade that the reference flew, because the port has only the other
 // one. Empty: the port flew all units.
 std::string note_on_units(const StressRun& run);
+// A note that the port counts its execution times. Empty: the host measures them.
+std::string note_on_cost(const StressRun& run);
 
 // The run for reports that know no units, such as JUnit, with one result for each rate. For the
 // cascade, the result is that of the unit with the graver verdict, with the reasons of both units.

@@ -49,6 +49,14 @@ std::string_view verdict_of(const StressRun& run) {
   return complete ? "pass" : "partial";
 }
 
+std::string note_on_cost(const StressRun& run) {
+  const auto& counter = run.description.cost;
+  if (!counter || !counter->unit_ns()) return "";
+  return fmt::format(
+      "the port counts its execution times, in {}; all other times are those of this machine",
+      counter->to_string());
+}
+
 std::string note_on_units(const StressRun& run) {
   for (const StressResult& stress : run.results) {
     if (!stress.module) continue;

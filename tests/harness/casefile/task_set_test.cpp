@@ -44,6 +44,27 @@ TEST(TaskSet, IsRead) {
   EXPECT_FALSE(read(unit)->estimator);
 }
 
+TEST(TaskSet, AUnitTakesItsMeasuredExecutionTime) {
+  const TemporaryDirectory directory;
+  const auto path = directory.path() / "tasks.toml";
+  const auto read_measured = [&](const std::string& text, const UnitExecution& measured) {
+    EXPECT_TRUE(write_file(path, text));
+    return read_task_set(path, measured);
+  };
+  const std::string without = "[task.unit]\nrate_hz = 250\npriority = 2\n";
+  EXPECT_FALSE(read(without));
+  for (const std::string& text : {std::string(unit), without}) {
+    const auto set = read_measured(text, {{Module::mc_att_control, us(90)}});
+    ASSERT_TRUE(set) << set.error().to_string();
+    EXPECT_THAT(set->tasks[set->unit].execution, ElementsAre(us(90)));
+  }
+  EXPECT_THAT(read_measured(unit, {{Module::mc_att_control, ns(3)}})->tasks[0].execution,
+              ElementsAre(us(1)));
+  const auto wrong = read_measured(unit, {{Module::rate_unit, us(90)}});
+  ASSERT_FALSE(wrong);
+  EXPECT_THAT(wrong.error().message, HasSubstr("no execution time of the controller was measured"));
+}
+
 TEST(TaskSet, AMisspeltNameIsSuggested) {
   const std::string rest = "rate_hz = 9\nexecution_us = 1\npriority = 1\n";
   EXPECT_THAT(error_of("[task.io]\n" + rest + "[task.uint]\n" + rest),

@@ -49,6 +49,15 @@ TEST(StressSummary, AnOverrunIsAboveTheBudget) {
   EXPECT_EQ(summary_of_step(step_that_took(us(900), us(900)), 1e300).overruns, 0u);
 }
 
+TEST(StressSummary, ATimeThatThePortCountsIsItsExecutionTime) {
+  LiveTick tick = step_that_took(us(900), us(800));
+  tick.counted = us(40);
+  EXPECT_EQ(summary_of_step(tick, 50).overruns, 0u);
+  EXPECT_EQ(summary_of_step(tick, 50).execution.max, us(40));
+  tick.counted = us(60);
+  EXPECT_EQ(summary_of_step(tick, 50).overruns, 1u);
+}
+
 TEST(StressSummary, EachStepThatOverrunsOrWaitsIsCounted) {
   LiveFlight flight;
   flight.unit.ticks = {step_that_took(us(60), us(60)), step_that_took(us(10), us(10)),
