@@ -118,7 +118,9 @@ class Answerer {
     json answer = {{"clock_ns", times->clock.count()}, {"steps", times->steps.size()}};
     if (times->stack_bytes) answer["stack"] = *times->stack_bytes;
     set_end(times->fault, {}, answer);
-    return send(std::move(answer), {blob_of(times->steps)});
+    if (!host_.declarations().cost) return send(std::move(answer), {blob_of(times->steps)});
+    answer["costs"] = times->costs.size();
+    return send(std::move(answer), {blob_of(times->costs)});
   }
 
   bool send(json head, const std::vector<Blob>& blobs = {}) {
@@ -246,11 +248,16 @@ Result<Result<LiveFlight>> read_live(const Arrived& arrived, const LiveRequest& 
   });
 }
 
-Result<Result<StepTimes>> read_times(const Arrived& arrived, std::size_t ticks) {
+Result<Result<StepTimes>> read_times(const Arrived& arrived, std::size_t ticks, bool counts) {
   return read_answer(arrived, [&](JsonReader& head) -> Result<StepTimes> {
     if (head.has("error")) return error_in(head);
     StepTimes times;
     times.fault = fault_from(head, ticks, arrived.of_program);
+    if (counts) {
+      const std::size_t count = ticks_from(head, "costs", ticks, times.fault.has_value());
+      times.costs = objects_from<StepCost>(arrived.blobs, count, "costs", head);
+      return times;
+    }
     const std::size_t count = ticks_from(head, "steps", ticks, times.fault.has_value());
     times.steps = objects_from<Nanoseconds>(arrived.blobs, count, "steps", head);
     const auto is_sane = [](Nanoseconds step) {

@@ -16,7 +16,8 @@
 //     process -> {"request": 3, "units": [...], ...}        live_message.hpp
 //     judge   -> {"do": "time", "subject": ..., ...}        the module's inputs, tick by tick
 //     process -> {"request": 4, "fault", "clock_ns", "steps", "stack"}
-//                                                           nanoseconds of each step
+//                                                           nanoseconds of each step; of a
+//                port that counts its cost: "costs"         StepCost of each step
 //     judge   -> {"do": "supports", "profile": ...}
 //     process -> {"request": 5, "supports": true}
 //
@@ -72,7 +73,8 @@ Result<Driven> read_driven(const Arrived& arrived, const ModuleUnderTest& subjec
 Result<Result<Flown>> read_flown(const Arrived& arrived, const FlightPlan& plan,
                                  Nanoseconds duration);
 Result<Result<LiveFlight>> read_live(const Arrived& arrived, const LiveRequest& request);
-Result<Result<StepTimes>> read_times(const Arrived& arrived, std::size_t ticks);
+// `counts`: the port declared that it counts its cost.
+Result<Result<StepTimes>> read_times(const Arrived& arrived, std::size_t ticks, bool counts);
 Result<bool> read_supports(const Arrived& arrived);
 Result<Result<Declarations>> read_greeting(const Arrived& arrived);
 // Reads an answer of a program's host that is a fault only: Kind::crash or Kind::protocol. Empty:

@@ -83,6 +83,7 @@ Result<LiveFlight> InProcessHost::fly_live(const LivePlan& plan, const LiveWatch
 
 Result<StepTimes> InProcessHost::time_steps(const ModuleUnderTest& subject, const Trace& inputs,
                                             bool with_stack) {
+  if (declarations_.cost) return count_steps(subject, inputs);
   if (!clock_) clock_ = time_of_clock();
   StepTimes times;
   times.clock = *clock_;
@@ -100,6 +101,19 @@ Result<StepTimes> InProcessHost::time_steps(const ModuleUnderTest& subject, cons
   if (auto measured = measure_stack(subject, std::move(trace), times); !measured) {
     return tl::unexpected(measured.error());
   }
+  return times;
+}
+
+StepTimes InProcessHost::count_steps(const ModuleUnderTest& subject, const Trace& inputs) {
+  StepTimes times;
+  times.costs.reserve(inputs.samples.size());
+  Trace trace = inputs;
+  times.fault = ports_.run([&]() -> std::optional<PortFault> {
+    const auto unit = make_unit(driven(), subject);
+    if (!unit) return held(unit.error(), subject.profile);
+    CountedUnit counted(**unit, times.costs);
+    return held(attest::drive(counted, trace, subject.module), subject.profile);
+  });
   return times;
 }
 

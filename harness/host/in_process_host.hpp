@@ -34,6 +34,7 @@ class InProcessHost final : public PortHost {
   std::optional<PortFault> held(std::optional<PortFault> fault, const std::string& profile) const;
   Port& driven() { return noted_ ? *noted_ : *port_; }
   std::optional<PortFault> drive_part(const ModuleUnderTest& subject, Trace& part);
+  StepTimes count_steps(const ModuleUnderTest& subject, const Trace& inputs);
   Result<void> measure_stack(const ModuleUnderTest& subject, Trace trace, StepTimes& times);
 
   std::unique_ptr<Port> port_;

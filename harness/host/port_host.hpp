@@ -38,6 +38,9 @@ struct StepTimes {
   std::vector<Nanoseconds> steps;          // without the time of reading the clock
   Nanoseconds clock{0};                    // the time of reading the clock
   std::optional<std::size_t> stack_bytes;  // the most that a step used; empty unless requested
+  // Of a port that counts its cost (Declarations::cost): of each step. The rest is then empty, and
+  // the host's clock is not read.
+  std::vector<StepCost> costs = {};
   std::optional<PortFault> fault;
 };
 

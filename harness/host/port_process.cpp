@@ -129,9 +129,10 @@ class PortProcess final : public PortHost {
   Result<StepTimes> time_steps(const ModuleUnderTest& subject, const Trace& inputs,
                                bool with_stack) override {
     const auto sent = info_of(subject.module).all_inputs().copy(inputs.samples);
-    auto times =
-        ask(time_request(subject, inputs, with_stack), {blob_of(sent)},
-            [&](const Arrived& arrived) { return read_times(arrived, inputs.samples.size()); });
+    auto times = ask(
+        time_request(subject, inputs, with_stack), {blob_of(sent)}, [&](const Arrived& arrived) {
+          return read_times(arrived, inputs.samples.size(), declarations_.cost.has_value());
+        });
     if (times) {
       if (*times) (*times)->fault = judged((*times)->fault, subject.profile);
       return *std::move(times);

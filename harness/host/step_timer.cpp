@@ -29,6 +29,24 @@ int TimedUnit::step_structs(const void* in, void* out) {
   return code;
 }
 
+int CountedUnit::step_structs(const void* in, void* out) {
+  const int code = unit_.step_structs(in, out);
+  collect();
+  return code;
+}
+
+Batched CountedUnit::batch(std::span<Sample> samples,
+                           std::span<const std::uint64_t> timestamp_samples_us) {
+  const Batched batched = unit_.batch(samples, timestamp_samples_us);
+  collect();
+  return batched;
+}
+
+void CountedUnit::collect() {
+  const std::span<const StepCost> costs = unit_.costs();
+  costs_.insert(costs_.end(), costs.begin(), costs.end());
+}
+
 int UnitOnStack::step_structs(const void* in, void* out) {
   int code = ATTEST_FAILED;
   stack_.run([&] { code = unit_.step_structs(in, out); });

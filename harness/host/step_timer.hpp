@@ -1,4 +1,5 @@
-// Units that measure how long each step of another unit takes, and how much stack it uses.
+// Units that measure what each step of another unit costs: its time, its stack, or what the port
+// counts.
 #pragma once
 
 #include <cstdint>
@@ -35,6 +36,30 @@ class TimedUnit final : public Unit {
   Unit& unit_;
   Nanoseconds clock_;
   std::vector<Nanoseconds>& times_;
+};
+
+// Collects the costs that a program counts. It also makes batches, because no clock is read.
+class CountedUnit final : public Unit {
+ public:
+  // Appends the cost of each step to `costs`. `unit` and `costs` outlive this.
+  CountedUnit(Unit& unit, std::vector<StepCost>& costs) : unit_(unit), costs_(costs) {}
+
+  int set_parameter(const std::string& name, float value) override {
+    return unit_.set_parameter(name, value);
+  }
+  int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
+    return unit_.set_timestamp_sample(timestamp_sample_us);
+  }
+  int step_structs(const void* in, void* out) override;
+  std::size_t max_batch() const override { return unit_.max_batch(); }
+  Batched batch(std::span<Sample> samples,
+                std::span<const std::uint64_t> timestamp_samples_us) override;
+
+ private:
+  void collect();
+
+  Unit& unit_;
+  std::vector<StepCost>& costs_;
 };
 
 // Steps `unit` on `stack`. Both outlive this.

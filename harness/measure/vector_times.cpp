@@ -26,13 +26,17 @@ class Stopwatches {
     VectorTimes times{result_for(the_case, configuration), {}, {}, the_case.module};
     if (marks_declined(host_->declarations(), times.result)) return times;
     const Trace inputs = stimulate(the_case, configuration.rate.motor_unit);
-    for (int repeat = 0; repeat < options_.repeats; ++repeat) {
-      const bool with_stack = options_.stack && repeat + 1 == options_.repeats;
+    for (int repeat = 0; repeat < options_.runs(); ++repeat) {
+      const bool with_stack = options_.stack && repeat + 1 == options_.runs();
       auto timed = timed_steps(subject_of(the_case), inputs, with_stack);
       if (!timed) return tl::unexpected(timed.error());
       if (timed->fault) {
         judge(*timed->fault, times.result);
         return VectorTimes{std::move(times.result), {}, {}, the_case.module};
+      }
+      if (options_.counter) {
+        keep_counts(timed->costs, times);
+        continue;
       }
       clock_ = timed->clock;
       keep_quickest(std::move(timed->steps), times.steps);
@@ -59,6 +63,21 @@ class Stopwatches {
     return timed;
   }
 
+  // The largest count of each step is kept.
+  static void keep_counts(const std::vector<StepCost>& costs, VectorTimes& times) {
+    const bool is_first = times.steps.empty();
+    times.steps.resize(costs.size());
+    std::size_t varying = 0, stack_bytes = times.stack_bytes.value_or(0);
+    for (std::size_t i = 0; i < costs.size(); ++i) {
+      const Cost cost(costs[i].cost);
+      if (!is_first && cost != times.steps[i]) ++varying;
+      times.steps[i] = std::max(times.steps[i], cost);
+      stack_bytes = std::max<std::size_t>(stack_bytes, costs[i].stack_bytes);
+    }
+    times.varying = std::max(times.varying, varying);
+    if (stack_bytes > 0) times.stack_bytes = stack_bytes;
+  }
+
   static void keep_quickest(std::vector<Nanoseconds> steps, std::vector<Nanoseconds>& quickest) {
     if (quickest.empty()) {
       quickest = std::move(steps);
@@ -76,10 +95,11 @@ class Stopwatches {
   ClockTotals totals_;
 };
 
+// REQUIRES: with a budget, the costs have a duration.
 Histogram histogram_for(const TimeOptions& options) {
-  return Histogram(options.budget_us
-                       ? Nanoseconds(static_cast<std::int64_t>(*options.budget_us * 1000))
-                       : Nanoseconds::max());
+  if (!options.budget_us) return Histogram();
+  const double limit = *options.budget_us * 1000 / *cost_ns(options.counter);
+  return Histogram(Cost(static_cast<std::int64_t>(std::min(limit, 1e18))));
 }
 
 const Case* find_case(const std::vector<SelectedCase>& cases, const std::string& id) {
@@ -90,12 +110,16 @@ const Case* find_case(const std::vector<SelectedCase>& cases, const std::string&
 
 }  // namespace
 
+std::optional<double> cost_ns(const std::optional<CostCounter>& counter) {
+  return counter ? counter->unit_ns() : 1;
+}
+
 std::size_t VectorTimes::slowest_tick() const {
   return static_cast<std::size_t>(std::max_element(steps.begin(), steps.end()) - steps.begin());
 }
 
-Nanoseconds VectorTimes::median() const {
-  std::vector<Nanoseconds> sorted = steps;
+Cost VectorTimes::median() const {
+  std::vector<Cost> sorted = steps;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
   return *middle;
@@ -124,7 +148,7 @@ std::map<Module, Histogram> CorpusTimes::by_module() const {
   for (const VectorTimes& vector : vectors) {
     if (!vector.is_timed()) continue;
     Histogram& steps_of_module = modules[vector.module];
-    for (const Nanoseconds step : vector.steps) steps_of_module.add(step);
+    for (const Cost step : vector.steps) steps_of_module.add(step);
   }
   return modules;
 }
@@ -139,7 +163,7 @@ Result<CorpusTimes> time_corpus(const std::vector<SelectedCase>& cases, const Ti
       if (host.stop()) return times;
       auto vector = stopwatches.time(the_case, configuration);
       if (!vector) return tl::unexpected(vector.error());
-      for (const Nanoseconds step : vector->steps) times.steps.add(step);
+      for (const Cost step : vector->steps) times.steps.add(step);
       on_result(vector->result);
       times.vectors.push_back(*std::move(vector));
       times.clock = stopwatches.clock();

@@ -1,4 +1,7 @@
-// Measures how long a port's steps take in all vectors, and writes the input of the slowest step.
+// Measures what a port's steps cost in all vectors, and writes the input of the slowest step.
+//
+// The cost of a step is its time by the host's clock. If the port is a program that counts the cost
+// of its steps (PROTOCOL.md), it is this count.
 #pragma once
 
 #include <cstddef>
@@ -16,24 +19,40 @@
 
 namespace attest {
 
+// A time of the host's clock; or a count of the port, in the unit of TimeOptions::counter: 2011
+// cycles are Cost(2011). So both have one kind of histogram and one order.
+using Cost = Nanoseconds;
+
 struct TimeOptions {
-  int repeats = 5;                  // of each vector; the shortest time of each step counts
+  // Of each vector. The shortest time of each step counts, because a disturbance of the host only
+  // adds to it. Of a port's own counts the largest counts. Empty: 5 times, or a single one for a
+  // port's own counts.
+  std::optional<int> repeats;
   std::optional<double> budget_us;  // steps longer than this are counted
   bool stack = true;                // measure the stack of the steps, in another run of each vector
   std::filesystem::path worst;  // where to write the vector of the slowest step; empty: not written
+  // How the port counts: Declarations::cost, with another clock if the user gave one. Empty: the
+  // host's clock measures.
+  std::optional<CostCounter> counter = {};
+
+  int runs() const { return repeats.value_or(counter ? 1 : 5); }
 };
+
+// The duration of Cost(1) [ns]. Empty for instructions.
+std::optional<double> cost_ns(const std::optional<CostCounter>& counter);
 
 struct VectorTimes {
   VectorResult result;                     // pass, or why there are no times
-  std::vector<Nanoseconds> steps;          // the shortest time of each step
-  std::optional<std::size_t> stack_bytes;  // the most stack that a step used
+  std::vector<Cost> steps;                 // the cost of each step
+  std::optional<std::size_t> stack_bytes;  // the most stack that a step used, or the port reported
   Module module = Module::mc_att_control;  // whose steps were timed
+  std::size_t varying = 0;                 // steps whose counts differ from those of earlier runs
 
   bool is_timed() const { return !steps.empty(); }
   // REQUIRES: is_timed().
   std::size_t slowest_tick() const;
-  Nanoseconds slowest() const { return steps[slowest_tick()]; }
-  Nanoseconds median() const;
+  Cost slowest() const { return steps[slowest_tick()]; }
+  Cost median() const;
 };
 
 struct CorpusTimes {

@@ -54,10 +54,19 @@ std::optional<double> CostCounter::unit_ns() const {
   return std::nullopt;
 }
 
+std::string CostCounter::clock_text() const {
+  return unit == CostUnit::cycles ? fmt::format("{} MHz", clock_hz / 1e6) : "";
+}
+
 std::string CostCounter::to_string() const {
-  const std::string_view name = name_of(unit);
-  if (unit != CostUnit::cycles) return std::string(name);
-  return fmt::format("{} at {} MHz", name, clock_hz / 1e6);
+  const std::string clock = clock_text();
+  return fmt::format("{}{}{}", name_of(unit), clock.empty() ? "" : " at ", clock);
+}
+
+std::string count_text(std::int64_t count) {
+  std::string digits = fmt::to_string(count);
+  for (std::size_t left = digits.size(); left > 3;) digits.insert(left -= 3, 1, ',');
+  return digits;
 }
 
 }  // namespace attest

@@ -25,10 +25,13 @@ struct CostCounter {
 
   // The duration of one unit. Empty for instructions, which have no duration.
   std::optional<double> unit_ns() const;
-  std::string to_string() const;  // "cycles at 25 MHz"
+  std::string clock_text() const;  // "25 MHz"; empty without a clock
+  std::string to_string() const;   // "cycles at 25 MHz"
 
   friend bool operator==(const CostCounter&, const CostCounter&) = default;
 };
+
+std::string count_text(std::int64_t count);  // for people: "2,190"
 
 // Of one step. In binary frames as in memory.
 struct StepCost {

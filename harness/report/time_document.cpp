@@ -6,11 +6,10 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include "harness/core/json_text.hpp"
 #include "harness/core/version.hpp"
 #include "harness/report/html/histogram_plot.hpp"
+#include "harness/report/shown_cost.hpp"
 #include "harness/report/text.hpp"
 
 namespace attest {
@@ -36,22 +35,61 @@ GroupsByRate groups_of(const CorpusTimes& times) {
   return groups;
 }
 
-std::optional<Verdict> against_budget(const TimeRun& run, Nanoseconds time) {
-  if (!run.budget_us) return std::nullopt;
-  return in_microseconds(time) > *run.budget_us ? Verdict::fail : Verdict::pass;
+std::optional<Verdict> against_budget(const TimeRun& run, Cost cost) {
+  const auto ns = Shown(run.counter).in_ns(cost);
+  if (!run.budget_us || !ns) return std::nullopt;
+  return *ns > *run.budget_us * 1000 ? Verdict::fail : Verdict::pass;
 }
 
 // A row for each module, because steps of different modules are not comparable.
-DocumentTable modules_table(const CorpusTimes& times) {
-  DocumentTable table{
-      "Step times by module",
-      {"", "min [us]", "median [us]", "p90 [us]", "p99 [us]", "p99.9 [us]", "max [us]"}};
-  for (const auto& [module, steps] : times.by_module()) {
-    table.rows.push_back({std::string(info_of(module).title), steps.min(), steps.percentile(0.5),
-                          steps.percentile(0.9), steps.percentile(0.99), steps.percentile(0.999),
-                          steps.max()});
+DocumentTable modules_table(const TimeRun& run) {
+  const Shown shown(run.counter);
+  DocumentTable table{fmt::format("Step {}s by module", shown.what()), {""}};
+  for (const char* name : {"min", "median", "p90", "p99", "p99.9", "max"}) {
+    table.header.push_back(in_unit(name, shown));
+  }
+  for (const auto& [module, steps] : run.times.by_module()) {
+    std::vector<Cell>& row = table.rows.emplace_back();
+    row = {std::string(info_of(module).title), shown.cell(steps.min())};
+    for (const double part : {0.5, 0.9, 0.99, 0.999}) {
+      row.push_back(shown.cell(steps.percentile(part)));
+    }
+    row.push_back(shown.cell(steps.max()));
   }
   return table;
+}
+
+DocumentTable periods_table(const TimeRun& run, const std::vector<Period>& periods) {
+  const Shown shown(run.counter);
+  DocumentTable table{"Slowest step as a share of the period",
+                      {"", "rate [Hz]", in_unit("slowest step", shown), "share [%]", "vector"}};
+  if (!run.counter) table.rows_in_text = 0;
+  for (const Period& one : periods) {
+    const VectorTimes& vector = *one.slowest;
+    table.rows.push_back({std::string(info_of(one.module).title), vector.result.rate.to_string(),
+                          shown.cell(vector.slowest(), against_budget(run, vector.slowest())),
+                          fmt::format("{:.3g}", 100 * one.share), vector.result.id()});
+  }
+  return table;
+}
+
+// For each module, the largest share of a period: "acme-fc at 168 MHz: 37% of 8000 Hz (rate unit)".
+std::vector<Note> period_notes(const TimeRun& run, const std::vector<Period>& periods) {
+  std::vector<Note> notes;
+  if (!run.counter) return notes;
+  std::map<Module, const Period*> largest;
+  for (const Period& one : periods) {
+    const Period*& found = largest[one.module];
+    if (!found || one.share > found->share) found = &one;
+  }
+  const std::string clock = run.counter->clock_text();
+  for (const auto& [module, period] : largest) {
+    const VectorResult& result = period->slowest->result;
+    notes.push_back({fmt::format("{}{}{}: {:.3g}% of {} Hz ({}, {})", run.port_name,
+                                 clock.empty() ? "" : " at ", clock, 100 * period->share,
+                                 result.rate.to_string(), info_of(module).title, result.id())});
+  }
+  return notes;
 }
 
 // A row for each group, a column for each rate.
@@ -61,7 +99,9 @@ DocumentTable groups_table(const TimeRun& run) {
   for (const auto& [name, by_rate] : groups) {
     for (const auto& [rate_hz, group] : by_rate) rates.insert(rate_hz);
   }
-  DocumentTable table{"Slowest step by group and rate [us]; small: the median", {"group"}};
+  const Shown shown(run.counter);
+  DocumentTable table{in_unit("Slowest step by group and rate", shown) + "; small: the median",
+                      {"group"}};
   table.rows_in_text = 0;
   for (const double rate_hz : rates) table.header.push_back(fmt::format("{:g} Hz", rate_hz));
   for (const auto& [name, by_rate] : groups) {
@@ -71,8 +111,8 @@ DocumentTable groups_table(const TimeRun& run) {
       const auto group = by_rate.find(rate_hz);
       if (group == by_rate.end()) continue;
       const Histogram& steps = group->second;
-      cell = Cell(steps.max(), against_budget(run, steps.max()));
-      cell.small = Cell(steps.percentile(0.5)).text;
+      cell = shown.cell(steps.max(), against_budget(run, steps.max()));
+      cell.small = shown.cell(steps.percentile(0.5)).text;
     }
     table.rows.push_back(std::move(row));
   }
@@ -88,15 +128,16 @@ DocumentTable slowest_table(const TimeRun& run) {
     return a->slowest() > b->slowest();
   });
   order.resize(std::min(order.size(), slowest_on_page));
+  const Shown shown(run.counter);
   DocumentTable table{"The slowest steps: one of each vector",
-                      {"vector", "slowest step [us]", "at tick", "median [us]", "stack [bytes]"}};
+                      {"vector", in_unit("slowest step", shown), "at tick",
+                       in_unit("median", shown), "stack [bytes]"}};
   table.rows_in_text = slowest_in_text;
   for (const VectorTimes* vector : order) {
     const auto& stack = vector->stack_bytes;
     table.rows.push_back({vector->result.id(),
-                          {vector->slowest(), against_budget(run, vector->slowest())},
-                          fmt::to_string(vector->slowest_tick()),
-                          vector->median(),
+                          shown.cell(vector->slowest(), against_budget(run, vector->slowest())),
+                          fmt::to_string(vector->slowest_tick()), shown.cell(vector->median()),
                           stack ? fmt::to_string(*stack) : "-"});
   }
   return table;
@@ -137,30 +178,65 @@ std::vector<Note> failures_of(const CorpusTimes& times) {
   return notes;
 }
 
+std::string how_measured(const TimeRun& run) {
+  const std::string runs = counted(static_cast<std::size_t>(run.repeats), "run");
+  if (!run.counter) {
+    return fmt::format("each the shortest of {}; the time to read the clock ({}) is subtracted",
+                       runs, human_time(run.times.clock));
+  }
+  std::string text = fmt::format("counted by the port in {}, in place of the host's clock",
+                                 run.counter->to_string());
+  if (run.repeats == 1) return text;
+  std::size_t varying = 0;
+  for (const VectorTimes& vector : run.times.vectors) varying += vector.varying;
+  if (varying == 0) return text + fmt::format(", with equal counts in {}", runs);
+  return text + fmt::format(", each the largest of {}; {} of the counts differ between them", runs,
+                            varying);
+}
+
+// The changes that fail are errors; of the others, the largest growth comes first.
+std::vector<Note> change_notes(const TimeRun& run) {
+  constexpr std::size_t most = 20;
+  std::vector<Note> notes;
+  for (const CostChange& change : run.changes) {
+    if (notes.size() == most) {
+      notes.push_back({fmt::format("and {} more changes", run.changes.size() - most)});
+      break;
+    }
+    notes.push_back({change.to_string(), change.fails});
+  }
+  if (!run.budget_file.empty() && notes.empty()) {
+    notes.push_back({fmt::format("all worst costs are those of {}", run.budget_file)});
+  }
+  return notes;
+}
+
 DocumentHead head_of(const TimeRun& run, bool any_fails) {
   const Histogram& steps = run.times.steps;
+  const bool has_budget = run.budget_us || !run.budget_file.empty();
   const bool failed = any_fails || (run.budget_us && steps.over_limit() > run.allowed);
   const auto& vectors = run.times.vectors;
   const auto timed = std::count_if(vectors.begin(), vectors.end(),
                                    [](const VectorTimes& vector) { return vector.is_timed(); });
-  std::string sentence = fmt::format(
-      "{} steps of {}, each the shortest of {}; the time to read the clock ({}) is subtracted",
-      steps.count(), counted(static_cast<std::size_t>(timed), "vector"),
-      counted(static_cast<std::size_t>(run.repeats), "run"), human_time(run.times.clock));
+  std::string sentence =
+      fmt::format("{} steps of {}, {}", steps.count(),
+                  counted(static_cast<std::size_t>(timed), "vector"), how_measured(run));
   if (run.budget_us) {
     sentence += fmt::format("; {} of {} steps took longer than {:g} us, allowed {}",
                             steps.over_limit(), steps.count(), *run.budget_us, run.allowed);
+    const double slowest_us = Shown(run.counter).in_ns(steps.max()).value_or(0) / 1000;
+    sentence += fmt::format("; the slowest takes {:.3g}% of it", 100 * slowest_us / *run.budget_us);
   }
   return {failed ? Verdict::fail : Verdict::pass,
-          failed          ? "fail"
-          : run.budget_us ? "pass"
-                          : "measured",
-          fmt::format("Step times of {}", run.port), std::move(sentence)};
+          failed       ? "fail"
+          : has_budget ? "pass"
+                       : "measured",
+          fmt::format("Step {}s of {}", Shown(run.counter).what(), run.port), std::move(sentence)};
 }
 
 std::vector<PlotMark> budget_mark(const TimeRun& run) {
   if (!run.budget_us) return {};
-  return {{*run.budget_us, "budget"}};
+  return {{Shown(run.counter).number_of_us(*run.budget_us), "budget"}};
 }
 
 PlotGroup distribution(const TimeRun& run) {
@@ -168,8 +244,10 @@ PlotGroup distribution(const TimeRun& run) {
   for (const auto& [module, steps] : run.times.by_module()) {
     modules.push_back({fmt::format("steps of the {}", info_of(module).title), steps.buckets()});
   }
-  PlotGroup group{"All steps", "step time [us]", {}};
-  group.plots = {histogram_plot("Step times", modules, budget_mark(run))};
+  const Shown shown(run.counter);
+  PlotGroup group{"All steps", in_unit(fmt::format("step {}", shown.what()), shown), {}};
+  group.plots = {histogram_plot(fmt::format("Step {}s", shown.what()), modules, budget_mark(run),
+                                shown.scale())};
   return group;
 }
 
@@ -181,20 +259,21 @@ Plot by_rate(const TimeRun& run, Module module) {
   }
   PlotSeries slowest{"slowest step", {}, {}}, p99{"p99", {}, {}}, median{"median", {}, {}};
   PlotSeries budget{"budget", {}, {}, LinePattern::dashed, 4};
-  const auto add = [](double rate_hz, double time_us, PlotSeries& series) {
+  const Shown shown(run.counter);
+  const auto add = [](double rate_hz, double cost, PlotSeries& series) {
     series.x.push_back(rate_hz);
-    series.y.push_back(static_cast<float>(time_us));
+    series.y.push_back(static_cast<float>(cost));
   };
   for (const auto& [rate_hz, all] : steps) {
-    add(rate_hz, in_microseconds(all.max()), slowest);
+    add(rate_hz, shown.number(all.max()), slowest);
     if (supports_percentile(all.count(), 0.99)) {
-      add(rate_hz, in_microseconds(all.percentile(0.99)), p99);
+      add(rate_hz, shown.number(all.percentile(0.99)), p99);
     }
-    add(rate_hz, in_microseconds(all.percentile(0.5)), median);
-    if (run.budget_us) add(rate_hz, *run.budget_us, budget);
+    add(rate_hz, shown.number(all.percentile(0.5)), median);
+    if (run.budget_us) add(rate_hz, shown.number_of_us(*run.budget_us), budget);
   }
-  Plot plot{fmt::format("Step times of the {} by loop rate", info_of(module).title), "us",
-            "of all groups"};
+  Plot plot{fmt::format("Step {}s of the {} by loop rate", shown.what(), info_of(module).title),
+            std::string(shown.unit()), "of all groups"};
   plot.logarithmic_x = plot.logarithmic_y = true;
   plot.series = {slowest, p99, median, budget};
   std::erase_if(plot.series, [](const PlotSeries& series) { return series.x.empty(); });
@@ -209,84 +288,39 @@ PlotGroup by_rate(const TimeRun& run) {
   return group;
 }
 
-using nlohmann::ordered_json;
-
-ordered_json json_of(const VectorTimes& vector) {
-  ordered_json out = {{"id", vector.result.id()},
-                      {"module", name_of(vector.module)},
-                      {"verdict", name_of(vector.result.verdict)}};
-  if (!vector.is_timed()) return out;
-  out["max_ns"] = vector.slowest().count();
-  out["median_ns"] = vector.median().count();
-  if (vector.stack_bytes) out["stack_bytes"] = *vector.stack_bytes;
-  out["steps"] = vector.steps.size();
-  out["worst_tick"] = vector.slowest_tick();
-  return out;
-}
-
-ordered_json json_of(const Histogram& steps) {
-  return {{"max_ns", steps.max().count()},
-          {"median_ns", steps.percentile(0.5).count()},
-          {"min_ns", steps.min().count()},
-          {"p90_ns", steps.percentile(0.9).count()},
-          {"p99_ns", steps.percentile(0.99).count()},
-          {"p99_9_ns", steps.percentile(0.999).count()},
-          {"steps", steps.count()}};
-}
-
-ordered_json json_of(const CorpusTimes& times) {
-  ordered_json out = json_of(times.steps);
-  out["clock_ns"] = times.clock.count();
-  out["over_budget"] = times.steps.over_limit();
-  if (const auto* most = times.with_most_stack()) out["stack_bytes"] = *most->stack_bytes;
-  out["worst_tick"] = times.with_slowest_step()->slowest_tick();
-  return out;
-}
-
-ordered_json modules_json(const CorpusTimes& times) {
-  ordered_json out = ordered_json::object();
-  for (const auto& [module, steps] : times.by_module()) {
-    out[std::string(name_of(module))] = json_of(steps);
-  }
-  return out;
-}
-
 }  // namespace
 
 Document time_document(const TimeRun& run) {
   const CorpusTimes& times = run.times;
   Document document;
   document.notes = failures_of(times);
-  document.head = head_of(run, !document.notes.empty());
-  document.facts = {{"attest", version},
-                    {"port", run.port},
-                    {"budget [us]", run.budget_us ? fmt::format("{:g}", *run.budget_us) : ""},
-                    {"time to read the clock, subtracted", human_time(times.clock)}};
+  const bool has_grown =
+      std::ranges::any_of(run.changes, [](const CostChange& change) { return change.fails; });
+  document.head = head_of(run, !document.notes.empty() || has_grown);
+  document.facts = {
+      {"attest", version},
+      {"port", run.port},
+      {"budget [us]", run.budget_us ? fmt::format("{:g}", *run.budget_us) : ""},
+      {"budget file", run.budget_file},
+      {"counted by the port", run.counter ? run.counter->to_string() : ""},
+      {"time to read the clock, subtracted", run.counter ? "" : human_time(times.clock)}};
   if (times.steps.count() == 0) return document;
+  const std::vector<Period> periods = periods_of(run);
+  for (const auto& notes : {change_notes(run), period_notes(run, periods)}) {
+    document.notes.insert(document.notes.end(), notes.begin(), notes.end());
+  }
   if (const VectorTimes* most = times.with_most_stack()) {
-    document.notes.push_back({fmt::format("stack of a step: at most {} bytes ({})",
-                                          *most->stack_bytes, most->result.id())});
+    document.notes.push_back(
+        {run.counter ? fmt::format("stack: {} bytes, the high-water mark that the port reports",
+                                   *most->stack_bytes)
+                     : fmt::format("stack of a step: at most {} bytes ({})", *most->stack_bytes,
+                                   most->result.id())});
   }
   if (!run.instructions.empty()) document.notes.push_back({instructions(run.instructions)});
-  document.tables = {modules_table(times), slowest_table(run), groups_table(run)};
+  document.tables = {modules_table(run), slowest_table(run), groups_table(run)};
+  if (!periods.empty()) document.tables.push_back(periods_table(run, periods));
   document.groups = {distribution(run), by_rate(run)};
   return document;
-}
-
-std::string time_json(const TimeRun& run) {
-  ordered_json out = {{"schema", "attest-time-1"},
-                      {"attest_version", version},
-                      {"port", run.port},
-                      {"repeats", run.repeats},
-                      {"budget_us", nullptr},
-                      {"all", json_of(run.times)},
-                      {"modules", modules_json(run.times)},
-                      {"slowest", run.times.with_slowest_step()->result.id()},
-                      {"instructions", run.instructions},
-                      {"vectors", ordered_json::array()}};
-  if (run.budget_us) out["budget_us"] = *run.budget_us;
-  for (const VectorTimes& vector : run.times.vectors) out["vectors"].push_back(json_of(vector));
-  return document_of(out);
 }
 
 }  // namespace attest

@@ -79,7 +79,7 @@ void fly(const Arrived& arrived) {
 }
 
 void time(const Arrived& arrived) {
-  const auto times = read_times(arrived, ticks);
+  const auto times = read_times(arrived, ticks, false);
   if (!is_accepted(times) || !is_accepted(*times)) return;
   require((*times)->clock >= Nanoseconds(0), "a clock that takes time");
   for (const Nanoseconds step : (*times)->steps) require(step >= Nanoseconds(0), "a duration");

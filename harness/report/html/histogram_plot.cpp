@@ -11,19 +11,22 @@ namespace {
 
 constexpr double bars_per_decade = 20;
 
-int bar_of(const Histogram::Bucket& bucket) {
-  const double middle = std::sqrt(std::max(in_microseconds(bucket.from), 1e-3) *
-                                  std::max(in_microseconds(bucket.to), 1e-3));
+int bar_of(const Histogram::Bucket& bucket, Nanoseconds unit) {
+  const auto at_least_one = [](Nanoseconds time) {
+    return static_cast<double>(std::max(time.count(), std::int64_t{1}));
+  };
+  const double middle = std::sqrt(at_least_one(bucket.from) * at_least_one(bucket.to)) /
+                        static_cast<double>(unit.count());
   return static_cast<int>(std::floor(bars_per_decade * std::log10(middle)));
 }
 
 double edge(int bar) { return std::pow(10, bar / bars_per_decade); }
 
-PlotSeries series_of(const NamedHistogram& histogram, int first, int last) {
+PlotSeries series_of(const NamedHistogram& histogram, int first, int last, Nanoseconds unit) {
   std::map<int, double> counts;
   double all = 0;
   for (const Histogram::Bucket& bucket : histogram.buckets) {
-    counts[bar_of(bucket)] += static_cast<double>(bucket.count);
+    counts[bar_of(bucket, unit)] += static_cast<double>(bucket.count);
     all += static_cast<double>(bucket.count);
   }
   PlotSeries series{histogram.name, {}, {}};
@@ -38,7 +41,7 @@ PlotSeries series_of(const NamedHistogram& histogram, int first, int last) {
 }  // namespace
 
 Plot histogram_plot(std::string title, const std::vector<NamedHistogram>& histograms,
-                    std::vector<PlotMark> marks) {
+                    std::vector<PlotMark> marks, Nanoseconds unit) {
   Plot plot{std::move(title), "% of the samples"};
   plot.shape = PlotShape::bars;
   plot.logarithmic_x = plot.logarithmic_y = true;
@@ -46,8 +49,8 @@ Plot histogram_plot(std::string title, const std::vector<NamedHistogram>& histog
   int first = std::numeric_limits<int>::max(), last = std::numeric_limits<int>::min();
   for (const NamedHistogram& histogram : histograms) {
     for (const Histogram::Bucket& bucket : histogram.buckets) {
-      first = std::min(first, bar_of(bucket));
-      last = std::max(last, bar_of(bucket));
+      first = std::min(first, bar_of(bucket, unit));
+      last = std::max(last, bar_of(bucket, unit));
     }
   }
   if (first > last) return plot;
@@ -62,7 +65,7 @@ Plot histogram_plot(std::string title, const std::vector<NamedHistogram>& histog
   }
   for (std::size_t i = 0; i < histograms.size(); ++i) {
     if (histograms[i].buckets.empty()) continue;
-    plot.series.push_back(series_of(histograms[i], first, last));
+    plot.series.push_back(series_of(histograms[i], first, last, unit));
     plot.series.back().colour = static_cast<int>(i);
   }
   return plot;

@@ -106,6 +106,7 @@ TEST(HostProtocol, AGreetingIsRead) {
   EXPECT_EQ((*read)->fixed_step, Rate::hz(250));
   EXPECT_EQ((*read)->cost, (CostCounter{CostUnit::cycles, 25e6}));
   EXPECT_TRUE((*read)->modules == only(Module::mc_att_control));
+  EXPECT_FALSE(read_greeting(Sent(greeting, {}).as_answer_to(0)));  // a library does not count
 }
 
 TEST(HostProtocol, EachMemberOfAGreetingHasARange) {
@@ -144,13 +145,6 @@ TEST(HostProtocol, EachMemberOfAGreetingHasARange) {
   EXPECT_EQ(wrong_greeting("/says/fraction_bits", 32), "");
   EXPECT_EQ(wrong_greeting("/says/fixed_step", "1000/3"), "");
   EXPECT_EQ(wrong_greeting("/says/clock_hz", 1e12), "");
-}
-
-TEST(HostProtocol, ALibraryDoesNotCountItsCost) {
-  Sent sent(greeting, {});
-  const auto read = read_greeting(sent.as_answer_to(0));
-  ASSERT_FALSE(read);
-  EXPECT_THAT(read.error().message, HasSubstr("only a program counts its cost"));
 }
 
 std::string wrong_fault(const json& fault, bool of_program = false) {
@@ -272,7 +266,7 @@ TEST(HostProtocol, ParametersOfAFlightHaveATickANameAndBits) {
 TEST(HostProtocol, TimesAreOfAllSteps) {
   const auto is_timed = [](const json& head, std::size_t ticks) {
     Sent sent(head, {zeros(3 * sizeof(Nanoseconds))});
-    return read_times(sent.as_answer_to(5), ticks).has_value();
+    return read_times(sent.as_answer_to(5), ticks, false).has_value();
   };
   const json right = {{"request", 5}, {"steps", 3}, {"clock_ns", 20}};
   EXPECT_TRUE(is_timed(right, 3));
@@ -288,8 +282,20 @@ TEST(HostProtocol, StepsTakeATime) {
     std::string blob(sizeof step_ns, '\0');
     std::memcpy(blob.data(), &step_ns, sizeof step_ns);
     Sent sent({{"request", 5}, {"steps", 1}, {"clock_ns", 20}}, {blob});
-    EXPECT_FALSE(read_times(sent.as_answer_to(5), 1)) << step_ns;
+    EXPECT_FALSE(read_times(sent.as_answer_to(5), 1, false)) << step_ns;
   }
+}
+
+TEST(HostProtocol, APortThatCountsHasACostForEachStep) {
+  const auto costs_of = [](const json& head, std::string blob) -> std::size_t {
+    Sent sent(head, {std::move(blob)});
+    const auto read = read_times(sent.as_answer_to(5), 3, true);
+    return read && *read ? (*read)->costs.size() : 0;
+  };
+  EXPECT_EQ(costs_of({{"request", 5}, {"costs", 3}}, zeros(24)), 3u);
+  EXPECT_EQ(costs_of({{"request", 5}, {"costs", 2}}, zeros(16)), 0u);
+  EXPECT_EQ(costs_of({{"request", 5}, {"costs", 3}}, zeros(16)), 0u);
+  EXPECT_EQ(costs_of({{"request", 5}, {"steps", 3}, {"clock_ns", 20}}, zeros(24)), 0u);
 }
 
 // Each byte of right messages is changed, and pieces are cut out. A message that is still accepted

@@ -27,6 +27,12 @@ StepTimes steps(std::vector<Nanoseconds> times) {
   return timed;
 }
 
+StepTimes counts(std::vector<StepCost> costs) {
+  StepTimes counted;
+  counted.costs = std::move(costs);
+  return counted;
+}
+
 StepTimes gone_wrong() {
   StepTimes timed = steps({us(90), us(90)});
   timed.stack_bytes = 9000;
@@ -88,7 +94,8 @@ class TimeCorpus : public testing::Test {
     return answer;
   }
 
-  TimeOptions options_ = {.repeats = 1, .budget_us = {}, .stack = false, .worst = {}};
+  TimeOptions options_ = {
+      .repeats = 1, .budget_us = {}, .stack = false, .worst = {}, .counter = {}};
   Declarations declarations_;
   std::vector<Result<StepTimes>> answers_;
   std::optional<std::size_t> stops_after_;
@@ -117,6 +124,30 @@ TEST_F(TimeCorpus, ALaterRepeatCountsWhereItIsTheQuickest) {
   options_.repeats = 2;
   answers_ = {steps({us(9), us(1)}), steps({us(2), us(8)})};
   EXPECT_THAT(timed({open_loop("level")})->vectors[0].steps, ElementsAre(us(2), us(1)));
+}
+
+TEST_F(TimeCorpus, OfEachStepTheLargestCountOfThePortCounts) {
+  options_ = {.repeats = 2, .budget_us = 100, .stack = false, .worst = {},
+              .counter = CostCounter{CostUnit::cycles, 25e6}};
+  answers_ = {counts({{2500, 0}, {2501, 700}, {9, 690}}), counts({{2500, 710}, {2400, 0}, {9, 0}})};
+  const auto times = timed({open_loop("level")});
+  ASSERT_TRUE(times) << times.error().to_string();
+  const VectorTimes& vector = times->vectors.at(0);
+  EXPECT_THAT(vector.steps, ElementsAre(Cost(2500), Cost(2501), Cost(9)));
+  EXPECT_EQ(vector.stack_bytes, 710u);
+  EXPECT_EQ(vector.varying, 1u);
+  EXPECT_EQ(vector.slowest_tick(), 1u);
+  EXPECT_EQ(times->steps.over_limit(), 1u);  // 100 us are 2500 cycles
+}
+
+TEST_F(TimeCorpus, CountsOfThePortAreMadeOnce) {
+  options_.repeats = {};
+  options_.counter = CostCounter{CostUnit::instructions};
+  answers_ = {counts({{7, 0}})};
+  const auto times = timed({open_loop("level")});
+  ASSERT_TRUE(times) << times.error().to_string();
+  EXPECT_EQ(questions_.size(), 1u);
+  EXPECT_FALSE(times->vectors.at(0).stack_bytes);
 }
 
 TEST_F(TimeCorpus, EachVectorHasItsOwnInputsAndTimes) {
