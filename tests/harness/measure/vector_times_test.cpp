@@ -127,7 +127,10 @@ TEST_F(TimeCorpus, ALaterRepeatCountsWhereItIsTheQuickest) {
 }
 
 TEST_F(TimeCorpus, OfEachStepTheLargestCountOfThePortCounts) {
-  options_ = {.repeats = 2, .budget_us = 100, .stack = false, .worst = {},
+  options_ = {.repeats = 2,
+              .budget_us = 100,
+              .stack = false,
+              .worst = {},
               .counter = CostCounter{CostUnit::cycles, 25e6}};
   answers_ = {counts({{2500, 0}, {2501, 700}, {9, 690}}), counts({{2500, 710}, {2400, 0}, {9, 0}})};
   const auto times = timed({open_loop("level")});
