@@ -94,10 +94,10 @@ CHECK
   timed "" --budget-file slower.json
   [ "$status" -eq 0 ]
   has ", -"
-  sed -i '/"group":"rates"/d' slower.json
+  sed -i '/"group":"large_angle"/d' slower.json
   timed "" --budget-file slower.json
   [ "$status" -eq 1 ]
-  has "px4-v1.5.5/rates at 250 Hz, mc_att_control is not in the file"
+  has "px4-v1.5.5/large_angle at 250 Hz, mc_att_control is not in the file"
 }
 
 @test "a budget file of another port, unit, clock or profile is an error" {
