@@ -45,7 +45,7 @@ assert abs(step["periods"][0]["share"] - worst["max_ns"] * 250e-9) < 1e-12
 CHECK
 }
 
-@test "counts that differ between runs are told, and the largest counts" {
+@test "counts that differ between runs are reported, and the largest counts" {
   timed --noisy --repeat 2
   [ "$status" -eq 0 ]
   [[ $output =~ each\ the\ largest\ of\ 2\ runs\;\ [1-9][0-9]*\ of\ the\ counts\ differ ]]
