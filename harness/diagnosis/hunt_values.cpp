@@ -36,7 +36,7 @@ constexpr HuntRow hunt_rows[] = {
     {"landing_gear", Quantity::control, -1, 1, {-1, 0, 1, 0.5, -0.5, 0.1}},
     {"", Quantity::rate, -4, 4, {0, 3.84, -3.84, 0.01, 6.9813, -7.2}},
     {"", Quantity::angular_acceleration, -60, 60, {0, 1, -1, 20, -20, 100}},
-    {"unaided_heading", Quantity::angle, -3.2, 3.2, {0, 3.1, -3.1, 1.57, 0.0174, 0.1}},
+    {"unaided_heading", Quantity::angle, -3.2, 3.2, {0, 3.1, -3.1, 20, 0.0174, -9.5}},
     {"", Quantity::angle, -3.2, 3.2, {0, 3.1, -3.1, 1.57, -1.57, 0.1}},
     {"", Quantity::control, -1.2, 1.2, {0, 1, -1, 0.5, -0.5, 0.1}},
     {"integral_max", Quantity::integral, 0, 0.5, {0.3, 0, 0.05, 0.3, 1, 0.3}},
@@ -238,9 +238,8 @@ float hunt_parameter(const Parameter& parameter, Level level, HuntRandom& random
     case 2:
       value = next_to(random.chance(0.5) ? least : most, level, random);
       break;
-    case 3:
-      value = usual * random.uniform(0.5, 2);
-      break;
+    case 3:  // the law has no limits of parameters
+      return static_cast<float>(usual * random.uniform(0.5, 2));
     case 4:
       value = least + (most - least) * random.uniform(0, 0.1);
       break;
