@@ -142,29 +142,44 @@ struct Simulation {
   Document document;
 };
 
-// The reference flies as well, for the page and to find the first deviation.
-Result<Simulation> simulate(const Sim& sim, const HostOptions& options, const Declarations& port) {
+// Finds the first deviations of the flights, and returns notes about them.
+Result<std::vector<Note>> note_all_deviations(const Sim& sim, const Declarations& port,
+                                              std::vector<SimulatedFlight>& flights) {
+  std::vector<Note> notes;
+  for (SimulatedFlight& flight : flights) {
+    auto noted = note_deviations(sim.the_case, port, flight);
+    if (!noted) return tl::unexpected(noted.error());
+    const auto& first = flight.result.first;
+    if (!first) continue;
+    notes.push_back({fmt::format("{}: {}, first at tick {}. The verdict is of the metrics.",
+                                 flight.result.id(), outputs_deviate, first->tick),
+                     true, false});
+  }
+  return notes;
+}
+
+// With `has_page` the reference flies as well, on the first plant.
+Result<Simulation> simulate(const Sim& sim, const HostOptions& options, const Declarations& port,
+                            bool has_page) {
   auto flights = fly_all(sim, options);
   if (!flights) return tl::unexpected(flights.error());
-  const RunConfiguration& first = sim.configurations.front();
   FlightBackground background;
-  if (options.port != HostOptions().port) {
-    for (SimulatedFlight& flight : *flights) {
-      auto noted = note_deviations(sim.the_case, port, flight);
-      if (!noted) return tl::unexpected(noted.error());
+  std::vector<Note> notes;
+  if (options.port != HostOptions().port) {  // not the reference itself
+    auto noted = note_all_deviations(sim, port, *flights);
+    if (!noted) return tl::unexpected(noted.error());
+    notes = *std::move(noted);
+    if (has_page) {
+      auto right =
+          open_reference({&sim.the_case, sim.vehicle_model.get()})
+              ->fly({sim.configurations.front(), sim.timing, has_fixed_step(port, sim.the_case)});
+      if (!right) return tl::unexpected(right.error());
+      background.reference = *std::move(right);
     }
-    auto right = open_reference({&sim.the_case, sim.vehicle_model.get()})
-                     ->fly({first, sim.timing, has_fixed_step(port, sim.the_case)});
-    if (!right) return tl::unexpected(right.error());
-    background.reference = *std::move(right);
   }
   background.marks = marks_of(sim.the_case, flights->front());
   Document document = flight_document(*flights, port, background);
-  if (const auto& deviation = flights->front().result.first) {
-    document.notes.push_back({fmt::format("{}, first at tick {}. The verdict is of the metrics.",
-                                          outputs_deviate, deviation->tick),
-                              true, false});
-  }
+  document.notes.insert(document.notes.end(), notes.begin(), notes.end());
   return Simulation{*std::move(flights), std::move(document)};
 }
 
@@ -205,7 +220,7 @@ int sim_command(const SimOptions& options, const Globals& globals) {
   HostOptions host = options.host;
   const auto port = prepare_port(host);
   if (!port) return report_error(port.error());
-  const auto simulation = simulate(*sim, host, *port);
+  const auto simulation = simulate(*sim, host, *port, !options.html.empty());
   if (!simulation) return report_error(simulation.error());
   const auto& [flights, document] = *simulation;
   if (auto same = check_port(host); !same) return report_error(same.error());

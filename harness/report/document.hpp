@@ -121,7 +121,7 @@ enum class PlotShape {
 struct PlotMark {
   double x = 0;
   std::string text;
-  bool is_quiet = false;  // something to know, such as a gust, and not to worry about
+  bool is_quiet = false;  // an event, such as a gust; not a finding
 };
 
 struct Plot {

@@ -119,6 +119,8 @@ CHECK
   has "look first at the rate law"
   grep -q 'roll (reference)' page.html
   grep -q '"text":"first deviation: out/' page.html
+  run "$ATTEST" sim hover --port fault:i-subtracted --plant all --html page.html
+  [ "$(grep -o 'outputs deviate from the reference' page.html | wc -l)" -eq 2 ]
   run "$ATTEST" sim hover --port "lib:$STARTER" --html page.html
   [ "$status" -eq 0 ]
   lacks "deviate"
