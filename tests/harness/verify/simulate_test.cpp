@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/core/file.hpp"
+#include "harness/golden/reference.hpp"
 #include "harness/host/file_format.hpp"
 #include "harness/loop/case_timing.hpp"
 #include "harness/trace/csv.hpp"
@@ -105,6 +106,27 @@ TEST_F(Simulate, OneMetricBeyondItsBoundsFailsWhereverItStands) {
   EXPECT_EQ(verdict_on({sinks_too_far(), holds_height(), turns_slowly()}), Verdict::fail);
   EXPECT_EQ(verdict_on({holds_height(), sinks_too_little(), turns_slowly()}), Verdict::fail);
   EXPECT_EQ(verdict_on({holds_height(), turns_slowly(), sinks_too_far()}), Verdict::fail);
+}
+
+TEST_F(Simulate, NotesTheFirstOutputThatDeviates) {
+  const ModuleUnderTest controller{"px4-v1.5.5", Module::mc_att_control};
+  SimulatedFlight flight;
+  flight.flown.trace = *reference_outputs(controller, two_ticks().trace);
+  Declarations port;
+  ASSERT_TRUE(note_deviations(case_, port, flight));
+  EXPECT_FALSE(flight.result.first);
+
+  flight.flown.trace.samples[1].out.mc_att_ctrl_status.roll_rate_integ += 0.5f;
+  ASSERT_TRUE(note_deviations(case_, port, flight));
+  ASSERT_TRUE(flight.result.first);
+  EXPECT_EQ(flight.result.first->tick, 1u);
+  EXPECT_EQ(channels()[flight.result.first->channel].name,
+            "out/mc_att_ctrl_status.roll_rate_integ");
+  EXPECT_EQ(flight.result.verdict, Verdict::pass);
+
+  port.lacks.outputs = channels_of(controller.module, "out/mc_att_ctrl_status.");
+  ASSERT_TRUE(note_deviations(case_, port, flight));
+  EXPECT_FALSE(flight.result.first);
 }
 
 TEST_F(Simulate, AMetricThatIsNoNumberFails) {
