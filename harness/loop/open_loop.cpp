@@ -1,6 +1,7 @@
 #include "harness/loop/open_loop.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <set>
 #include <span>
@@ -121,7 +122,7 @@ std::optional<PortFault> drive_alternately(Drive judged, Other& other) {
 
 // The threads do not follow each other's steps, so the steps overlap in any way.
 std::optional<PortFault> drive_on_two_threads(Drive judged, Other& other, std::size_t ticks,
-                                              std::size_t& overlaps) {
+                                              Overlaps& overlaps) {
   std::optional<PortFault> fault, of_other;
   const auto judged_step = [&] {
     fault = judged.step();
@@ -132,7 +133,7 @@ std::optional<PortFault> drive_on_two_threads(Drive judged, Other& other, std::s
     return !of_other && !other.is_over();
   };
   if (run_on_two_threads(judged_step, other_step, ticks, overlaps)) return fault ? fault : of_other;
-  overlaps = enough_overlaps;  // there will be no more
+  overlaps.blocked = std::numeric_limits<std::size_t>::max();  // there will be no more
   return drive_alternately(judged, other);
 }
 
@@ -147,9 +148,17 @@ PortFault makes_no_other() {
       "create() returned NULL after the first instance was destroyed; create() is always legal"};
 }
 
-// Two instances of the subject. `overlaps`: those on two threads are added.
+bool are_alive_together(Instances instances) {
+  return instances == Instances::together || instances == Instances::two_threads;
+}
+
+bool is_on_two_threads(const Port& port, const ModuleUnderTest& subject) {
+  return subject.instances == Instances::two_threads && !port.is_one_at_a_time();
+}
+
+// Two instances of the subject. `overlaps`: counts those on two threads.
 std::optional<PortFault> drive_in_company(Port& port, const ModuleUnderTest& subject, Trace& trace,
-                                          std::size_t& overlaps) {
+                                          Overlaps& overlaps) {
   auto first = make_unit(port, subject);
   if (!first) return first.error();
   Other other(**first, subject, trace);
@@ -161,18 +170,16 @@ std::optional<PortFault> drive_in_company(Port& port, const ModuleUnderTest& sub
   if (!judged) {
     return subject.instances == Instances::again ? makes_no_other() : makes_only_one();
   }
-  UnitDriver driver(*judged, subject.module);
-  const Drive drive_judged(*judged, driver, trace);
-  if (subject.instances == Instances::together) return drive_alternately(drive_judged, other);
-  if (subject.instances == Instances::two_threads) {
-    if (port.is_one_at_a_time()) return drive_alternately(drive_judged, other);
-    return drive_on_two_threads(drive_judged, other, trace.samples.size(), overlaps);
-  }
   if (subject.instances == Instances::crossed) {
     if (auto fault = other.run()) return fault;
     first->reset();
   }
-  return drive(*judged, trace, subject.module);
+  if (!are_alive_together(subject.instances)) return drive(*judged, trace, subject.module);
+  OverlappedUnit overlapped(*judged);
+  UnitDriver driver(overlapped, subject.module);
+  const Drive drive_judged(overlapped, driver, trace);
+  if (!is_on_two_threads(port, subject)) return drive_alternately(drive_judged, other);
+  return drive_on_two_threads(drive_judged, other, trace.samples.size(), overlaps);
 }
 
 PortFault no_profile(const ModuleUnderTest& subject) {
@@ -331,12 +338,11 @@ std::optional<PortFault> drive(Port& port, const ModuleUnderTest& subject, Trace
     const auto unit = make_unit(port, subject);
     return unit ? drive(**unit, trace, subject.module) : unit.error();
   }
-  const auto run = [&](Trace& driven, std::size_t& overlaps) {
+  const auto run = [&](Trace& driven, Overlaps& overlaps) {
     return drive_in_company(port, subject, driven, overlaps);
   };
-  std::size_t none = 0;
-  const bool overlap = subject.instances == Instances::two_threads && !port.is_one_at_a_time();
-  return overlap ? run_until_overlapped(trace, run) : run(trace, none);
+  Overlaps none;
+  return is_on_two_threads(port, subject) ? run_until_overlapped(trace, run) : run(trace, none);
 }
 
 }  // namespace attest

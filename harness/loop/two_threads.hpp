@@ -11,27 +11,45 @@
 
 namespace attest {
 
+// The unit whose steps shall overlap with those of the other instance. Does not own it.
+class OverlappedUnit final : public Unit {
+ public:
+  explicit OverlappedUnit(Unit& unit) : unit_(unit) {}
+
+  int set_parameter(const std::string& name, float value) override {
+    return unit_.set_parameter(name, value);
+  }
+  int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
+    return unit_.set_timestamp_sample(timestamp_sample_us);
+  }
+  int step_structs(const void* in, void* out) override;
+
+ private:
+  Unit& unit_;
+};
+
+// The pauses of the judged thread that came in a step of the OverlappedUnit.
+struct Overlaps {
+  std::size_t whole = 0;    // the other thread made a whole step
+  std::size_t blocked = 0;  // it made none in time: it waits for a lock that the step holds
+
+  bool are_enough() const;
+};
+
 // Calls `judged` on a new thread and `other` on this one, again and again, until `judged` returns
 // false. `other` is not called again after it has returned false, and is called at most some times
 // more often than `judged`. A timer pauses the thread of `judged`, wherever it is, until `other`
 // has run twice, and does that some hundred times. So both overlap also on one CPU, and on a busy
-// machine. A pause ends early if `other` seems to wait for a lock that `judged` holds. `steps`:
-// about how often `judged` is called. Adds the pauses that came while `judged` ran to `overlaps`.
-// False: there is no second thread, and nothing was called. REQUIRES: at most one call at a time in
-// a process.
+// machine. `steps`: about how often `judged` is called. Counts in `overlaps`. False: there is no
+// second thread, and nothing was called. REQUIRES: at most one call at a time in a process.
 bool run_on_two_threads(const std::function<bool()>& judged, const std::function<bool()>& other,
-                        std::size_t steps, std::size_t& overlaps);
+                        std::size_t steps, Overlaps& overlaps);
 
-// So many overlaps miss data that both instances share during a tenth of a step with a probability
-// of 3e-5.
-inline constexpr std::size_t enough_overlaps = 100;
-
-// Calls `run` for `trace`, and then for copies of its inputs, until there are enough overlaps: on a
-// busy virtual machine, timers are milliseconds late, and one run has only a few. `run` makes fresh
-// instances, and adds its overlaps. Ends after some seconds, because a port that blocks the other
-// thread has none. Kind::failed: the outputs of two runs differ.
+// Calls `run` for `trace`, and then for copies of its inputs, until there are enough overlaps: most
+// pauses are not in a step. `run` makes fresh instances, and counts in `overlaps`. Kind::failed:
+// the outputs of two runs differ.
 std::optional<PortFault> run_until_overlapped(
     Trace& trace,
-    const std::function<std::optional<PortFault>(Trace& trace, std::size_t& overlaps)>& run);
+    const std::function<std::optional<PortFault>(Trace& trace, Overlaps& overlaps)>& run);
 
 }  // namespace attest

@@ -181,42 +181,51 @@ class SharingPort final : public Port {
   };
 };
 
-std::ptrdiff_t wrong_ticks(Instances instances, bool one_at_a_time) {
+// Whether drive() shows the variable: by wrong outputs, or by those of two runs that differ.
+bool shows_sharing(Instances instances, bool one_at_a_time) {
   SharingPort port;
   port.one_at_a_time = one_at_a_time;
   Trace trace = trace_of(3000);
   for (Sample& sample : trace.samples) sample.in.control_state.roll_rate = 1;
-  EXPECT_FALSE(drive(port, ModuleUnderTest{.profile = "any", .instances = instances}, trace));
-  return std::ranges::count_if(trace.samples, [](const Sample& sample) {
-    return sample.out.actuator_controls_0.control[0] != 1;
-  });
+  const auto fault = drive(port, {.profile = "any", .instances = instances}, trace);
+  EXPECT_TRUE(!fault || fault->kind == Kind::failed);
+  return fault || std::ranges::any_of(trace.samples, [](const Sample& sample) {
+           return sample.out.actuator_controls_0.control[0] != 1;
+         });
 }
 
 TEST(TwoThreads, ShowAVariableThatAStepShares) {
-  EXPECT_EQ(wrong_ticks(Instances::together, false), 0);
-  EXPECT_GT(wrong_ticks(Instances::two_threads, false), 0);
+  EXPECT_FALSE(shows_sharing(Instances::together, false));
+  EXPECT_TRUE(shows_sharing(Instances::two_threads, false));
 }
 
-// `overlaps_of_run`: one for each run; the last value stays.
-std::optional<PortFault> repeated(std::vector<std::size_t> overlaps_of_run, std::size_t wrong_run,
-                                  std::size_t& runs) {
+// How often two threads run. `of_a_run`: what each run adds.
+std::size_t runs_until_overlapped(Overlaps of_a_run) {
   Trace trace = trace_of(3);
-  runs = 0;
-  return run_until_overlapped(
-      trace, [&](Trace& driven, std::size_t& overlaps) -> std::optional<PortFault> {
-        overlaps += overlaps_of_run[std::min(runs, overlaps_of_run.size() - 1)];
-        if (++runs == wrong_run) driven.samples[1].out.actuator_controls_0.control[0] = 1;
-        return std::nullopt;
-      });
+  std::size_t runs = 0;
+  EXPECT_FALSE(run_until_overlapped(trace, [&](Trace&, Overlaps& overlaps) {
+    ++runs;
+    overlaps.whole += of_a_run.whole;
+    overlaps.blocked += of_a_run.blocked;
+    return std::optional<PortFault>();
+  }));
+  return runs;
 }
 
-TEST(TwoThreads, RunAgainUntilEnoughStepsOverlap) {
+TEST(TwoThreads, RunAgainUntilEnoughStepsOverlapOrAreBlocked) {
+  EXPECT_EQ(runs_until_overlapped({.whole = 1000}), 1u);
+  EXPECT_EQ(runs_until_overlapped({.whole = 101}), 3u);
+  EXPECT_EQ(runs_until_overlapped({.whole = 101, .blocked = 15}), 2u);
+  EXPECT_EQ(runs_until_overlapped({}), 30u);
+}
+
+TEST(TwoThreads, ARunThatDiffersFromTheFirstIsAFault) {
+  Trace trace = trace_of(3);
   std::size_t runs = 0;
-  EXPECT_FALSE(repeated({enough_overlaps}, 0, runs));
-  EXPECT_EQ(runs, 1u);
-  EXPECT_FALSE(repeated({3, enough_overlaps - 5, 2}, 0, runs));
-  EXPECT_EQ(runs, 3u);
-  const auto fault = repeated({1}, 4, runs);
+  const auto fault = run_until_overlapped(trace, [&](Trace& driven, Overlaps&) {
+    if (++runs == 4) driven.samples[1].out.actuator_controls_0.control[0] = 1;
+    return std::optional<PortFault>();
+  });
   ASSERT_TRUE(fault);
   EXPECT_EQ(runs, 4u);
   EXPECT_EQ(fault->kind, PortFault::Kind::failed);
@@ -224,7 +233,7 @@ TEST(TwoThreads, RunAgainUntilEnoughStepsOverlap) {
 }
 
 TEST(TwoThreads, AlternateForAPortThatIsOneAtATime) {
-  EXPECT_EQ(wrong_ticks(Instances::two_threads, true), 0);
+  EXPECT_FALSE(shows_sharing(Instances::two_threads, true));
 }
 
 // Notes what each of two rate units is given.
