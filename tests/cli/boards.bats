@@ -32,6 +32,23 @@ setup() {
   has "PASS"
 }
 
+# needs gcc-riscv64-unknown-elf, picolibc-riscv64-unknown-elf and qemu-system-misc
+riscv() {
+  command -v riscv64-unknown-elf-gcc >/dev/null || skip "no compiler for RISC-V"
+  command -v qemu-system-riscv32 >/dev/null || skip "no emulator of RISC-V"
+}
+
+@test "a RISC-V conforms to the bit" {
+  riscv
+  TARGET=rv32 run mine/check --core --profile px4-v1.5.5 --level exact
+  [ "$status" -eq 0 ]
+  has " passed, 0 failed"
+  TARGET=rv32 LAW=c_cascade run mine/check --group modes,rates --rate 250 \
+    --profile px4-v1.16.0 --level exact
+  [ "$status" -eq 0 ]
+  has "PASS"
+}
+
 # costs: of the first steps of a unit whose inputs are zero.
 costs() {
   "$PYTHON" - qemu-system-arm -M mps2-an386 -display none -monitor none \
@@ -89,6 +106,10 @@ COSTS
   [ "$status" -eq 1 ]
   has "crash: "
   has "it last printed: fault at 0x"
+  riscv
+  TARGET=rv32 run mine/check --filter px4-v1.5.5/rates/p_alone@250hz --no-diagnose
+  [ "$status" -eq 1 ]
+  has "it last printed: fault at 0x"
 }
 
 @test "a board with a UART reports its fault over the serial line" {
@@ -106,5 +127,5 @@ COSTS
 @test "an unknown target is an error" {
   TARGET=m5 run mine/check
   [ "$status" -eq 2 ]
-  has "TARGET=m5 is no target: m4f, m7, m33, m3"
+  has "TARGET=m5 is no target: m4f, m7, m33, m3, rv32"
 }

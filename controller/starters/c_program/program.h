@@ -25,7 +25,7 @@ void connection_write(const void* from, size_t size);
 
 /* ---- the cost of a step ----------------------------------------------------------------------*/
 
-/* Only with -DPROGRAM_CLOCK_HZ=<frequency>, for you to implement: ../cortex_m/start.c is an
+/* Only with -DPROGRAM_CLOCK_HZ=<frequency>, for you to implement: ../cortex_m/arm.c is an
  * example. The program then reports what each step costs. */
 
 /* Called before a step. */

@@ -11,11 +11,17 @@
 enum { OPEN = 1, WRITE = 5, READ = 6, EXIT = 0x20 };
 enum { FOR_STDIN = 0, FOR_STDOUT = 4, FOR_STDERR = 8 };
 
-static int call(int operation, const void* arguments) {
-  register int r0 __asm__("r0") = operation;
-  register const void* r1 __asm__("r1") = arguments;
-  __asm__ volatile("bkpt 0xab" : "+r"(r0) : "r"(r1) : "memory");
-  return r0;
+/* The registers of the arguments and of the result are those of a call in C. */
+__attribute__((naked, noinline, aligned(16))) static int call(int operation,
+                                                              const void* arguments) {
+#ifdef __riscv
+  /* The two instructions that do nothing mark the breakpoint, in instructions of 32 bits. */
+  __asm__ volatile(
+      ".option push\n .option norvc\n slli x0, x0, 0x1f\n ebreak\n srai x0, x0, 7\n ret\n"
+      ".option pop");
+#else
+  __asm__ volatile("bkpt 0xab\n bx lr");
+#endif
 }
 
 static int open_stream(uintptr_t mode) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The start of a Cortex-M: vectors, memory, floating point unit, stack and heap. */
+/* The start of a program on a board: memory, stack and heap. */
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
@@ -12,7 +12,6 @@ extern uint32_t data_in_rom[], data_begin[], data_end[], bss_begin[], bss_end[],
     stack_begin[], stack_end[];
 
 int main(void);
-void reset(void);
 
 /* ---- the stack, painted to see how much of it was used ---------------------------------------*/
 
@@ -29,28 +28,6 @@ uint32_t stack_used(void) {
   return (uint32_t)((const char*)stack_end - (const char*)word);
 }
 
-/* ---- the cost of a step, counted by SysTick, which every Cortex-M has -------------------------*/
-
-static struct {
-  volatile uint32_t control, reload, value; /* counts down, 24 bits */
-}* const systick = (void*)0xe000e010u;
-
-static volatile uint32_t wraps;
-
-static void on_wrap(void) { ++wraps; }
-
-void cost_begin(void) {
-  wraps = 0;
-  systick->reload = 0xffffff;
-  systick->value = 0;   /* any value: it begins at `reload` */
-  systick->control = 7; /* runs, with an interrupt at a wrap, on the clock of the processor */
-}
-
-uint32_t cost_end(void) {
-  systick->control = 4; /* stops, so that `wraps` and `value` belong together */
-  return (wraps << 24) + (systick->reload - systick->value);
-}
-
 /* ---- the heap of malloc(), from the end of the variables to the stack ------------------------*/
 
 void* _sbrk(ptrdiff_t increment) {
@@ -60,32 +37,12 @@ void* _sbrk(ptrdiff_t increment) {
   return end - increment;
 }
 
-/* ---- faults ----------------------------------------------------------------------------------*/
+/* The name in picolibc. */
+__attribute__((alias("_sbrk"))) void* sbrk(ptrdiff_t increment);
 
-/* `frame` is what the processor pushed: r0 to r3, r12, lr, pc, psr. */
-__attribute__((used)) static void fault_at(const uint32_t* frame) {
-  static char text[] = "fault at 0x00000000; arm-none-eabi-addr2line names the line\n";
-  const uint32_t pc = frame[6];
-  for (int i = 0; i < 8; ++i) text[18 - i] = "0123456789abcdef"[pc >> (4 * i) & 15];
-  board_fail(text);
-}
+/* ---- start and end ---------------------------------------------------------------------------*/
 
-__attribute__((naked)) static void fault(void) {
-  __asm__ volatile("mrs r0, msp\n b %0" : : "i"(fault_at));
-}
-
-/* ---- reset -----------------------------------------------------------------------------------*/
-
-/* A linker that loses this table makes a program that does not start: KEEP() in board.ld. */
-__attribute__((section(".vectors"), used)) static const struct {
-  uint32_t* stack;
-  void (*reset)(void);
-  void (*faults[5])(void); /* NMI, hard fault, memory, bus, usage */
-  void (*others[8])(void);
-  void (*systick)(void);
-} vectors = {stack_end, reset, {fault, fault, fault, fault, fault}, {0}, on_wrap};
-
-__attribute__((noinline)) static void start(void) {
+void board_start(void) {
   paint_stack();
   memcpy(data_begin, data_in_rom, (size_t)((char*)data_end - (char*)data_begin));
   memset(bss_begin, 0, (size_t)((char*)bss_end - (char*)bss_begin));
@@ -93,11 +50,8 @@ __attribute__((noinline)) static void start(void) {
   board_fail("main() returned\n");
 }
 
-void reset(void) {
-#ifdef __ARM_FP
-  /* Before the first float, or it is a fault: access to the floating point unit (CPACR). */
-  *(volatile uint32_t*)0xe000ed88u |= 0xfu << 20;
-  __asm__ volatile("dsb\n isb" ::: "memory");
-#endif
-  start();
+void board_fault(uint32_t pc) {
+  static char text[] = "fault at 0x00000000; addr2line of the compiler names the line\n";
+  for (int i = 0; i < 8; ++i) text[18 - i] = "0123456789abcdef"[pc >> (4 * i) & 15];
+  board_fail(text);
 }
