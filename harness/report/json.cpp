@@ -2,9 +2,11 @@
 
 #include "harness/core/json_reader.hpp"
 #include "harness/core/json_text.hpp"
+#include "harness/report/conclusion.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/report.hpp"
 #include "harness/report/statement.hpp"
+#include "harness/report/text.hpp"
 #include "harness/verify/claim.hpp"
 #include "harness/verify/verdict_json.hpp"
 
