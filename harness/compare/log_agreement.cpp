@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <limits>
 #include <map>
+#include <span>
 #include <utility>
 
 #include "harness/core/agreement.hpp"
@@ -39,6 +40,28 @@ std::vector<Topic> topics_in(const ChannelSet& present) {
   return topics;
 }
 
+// The successive samples of a trace: those that are kept of the parts before, then the last part.
+class Samples {
+ public:
+  // REQUIRES: `part` stays where it is up to keep_last().
+  void add(const Trace& part) { part_ = part.samples; }
+  // Keeps the last two samples or fewer, because the part ends.
+  void keep_last() {
+    const auto last = part_.last(std::min<std::size_t>(part_.size(), 2));
+    kept_.insert(kept_.end(), last.begin(), last.end());
+    kept_.erase(kept_.begin(), kept_.end() - std::min<std::ptrdiff_t>(std::ssize(kept_), 2));
+    part_ = {};
+  }
+  std::size_t size() const { return kept_.size() + part_.size(); }
+  const Sample& operator[](std::size_t at) const {
+    return at < kept_.size() ? kept_[at] : part_[at - kept_.size()];
+  }
+
+ private:
+  std::vector<Sample> kept_;
+  std::span<const Sample> part_;
+};
+
 // The range of the reference's finite values of a field at a tick and its neighbours.
 struct Range {
   double low = std::numeric_limits<double>::infinity();
@@ -50,7 +73,7 @@ struct Range {
 };
 
 Range range_around(std::size_t at, const Channel& channel, const Topic& topic,
-                   const std::vector<Sample>& reference) {
+                   const Samples& reference) {
   Range range;
   const std::size_t last = std::min(at + 2, reference.size());
   for (std::size_t i = at > 0 ? at - 1 : 0; i < last; ++i) {
@@ -65,29 +88,30 @@ Range range_around(std::size_t at, const Channel& channel, const Topic& topic,
 // Some successive ticks. A tick is judged with its two neighbours, so the last tick of a part waits
 // here for the next part, and the tick before it stays with it.
 struct TickWindow {
-  std::vector<Sample> got, logged, reference;
+  Samples got, logged, reference;
   std::vector<bool> leaves_out;
   std::size_t first_tick = 0;
   std::uint64_t begin_us = 0;  // the time of tick 0
 
   void add(const Trace& more_got, const Trace& more_logged, const Trace& more_reference,
            const std::vector<bool>& left_out) {
-    const std::size_t ticks = more_logged.samples.size();
-    if (logged.empty() && ticks > 0) begin_us = more_logged.samples.front().in.timestamp;
-    got.insert(got.end(), more_got.samples.begin(), more_got.samples.end());
-    logged.insert(logged.end(), more_logged.samples.begin(), more_logged.samples.end());
-    reference.insert(reference.end(), more_reference.samples.begin(), more_reference.samples.end());
+    if (logged.size() == 0 && !more_logged.samples.empty()) {
+      begin_us = more_logged.samples.front().in.timestamp;
+    }
+    got.add(more_got);
+    logged.add(more_logged);
+    reference.add(more_reference);
     leaves_out.insert(leaves_out.end(), left_out.begin(), left_out.end());
     leaves_out.resize(logged.size());
   }
 
-  void drop(std::size_t ticks) {
-    const auto count = static_cast<std::ptrdiff_t>(ticks);
-    for (auto* samples : {&got, &logged, &reference}) {
-      samples->erase(samples->begin(), samples->begin() + count);
-    }
-    leaves_out.erase(leaves_out.begin(), leaves_out.begin() + count);
-    first_tick += ticks;
+  void keep_last() {
+    const std::size_t ticks = logged.size();
+    for (Samples* samples : {&got, &logged, &reference}) samples->keep_last();
+    const std::size_t dropped = ticks - logged.size();
+    const auto begin = leaves_out.begin();
+    leaves_out.erase(begin, begin + static_cast<std::ptrdiff_t>(dropped));
+    first_tick += dropped;
   }
 };
 
@@ -178,11 +202,14 @@ class Agreement {
       return note(at, topic_.fields.front());
     }
     std::size_t worst = topic_.fields.front();
+    double largest = deviation_at(at, worst);
     for (const std::size_t field : topic_.fields) {
-      if (deviation_at(at, field) > deviation_at(at, worst)) worst = field;
+      const double deviation = deviation_at(at, field);
+      if (deviation > largest) worst = field;
+      largest = std::max(largest, deviation);
     }
-    if (has_no_number(at) && reference_is_finite(at)) ++found_.non_finite;
-    const double largest = deviation_at(at, worst);
+    // A deviation from a number is infinite.
+    if (std::isinf(largest) && has_no_number(at) && reference_is_finite(at)) ++found_.non_finite;
     if (largest > deviations_.largest()) found_.worst = pair_at(at, worst);
     deviations_.add(largest);
     constexpr double gross = 10;  // no right port rounds so differently
@@ -225,16 +252,13 @@ class Agreement {
     });
   }
 
+  // True if the log has a number in a field and the port has none.
   bool has_no_number(std::size_t at) const {
-    return std::any_of(topic_.fields.begin(), topic_.fields.end(),
-                       [&](std::size_t field) { return is_no_number(at, field); });
-  }
-
-  // True if the log has a number here and the port has none.
-  bool is_no_number(std::size_t at, std::size_t field) const {
-    const Channel& channel = channels()[field];
-    return !std::isfinite(value_of(channel, window_.got[at])) &&
-           std::isfinite(value_of(channel, window_.logged[at]));
+    return std::any_of(topic_.fields.begin(), topic_.fields.end(), [&](std::size_t field) {
+      const Channel& channel = channels()[field];
+      return !std::isfinite(value_of(channel, window_.got[at])) &&
+             std::isfinite(value_of(channel, window_.logged[at]));
+    });
   }
 
   bool is_between(std::size_t at) const {
@@ -311,10 +335,11 @@ void LogAgreement::add(const Trace& got, const Trace& logged, const Trace& refer
                        const std::vector<bool>& leaves_out) {
   impl_->window.add(got, logged, reference, leaves_out);
   const std::size_t ticks = impl_->window.logged.size();
-  if (ticks < 2) return;
-  impl_->judge_until(ticks - 1);
-  impl_->window.drop(ticks - 2);
-  impl_->judged = 1;
+  if (ticks >= 2) {
+    impl_->judge_until(ticks - 1);
+    impl_->judged = 1;
+  }
+  impl_->window.keep_last();
 }
 
 std::vector<TopicAgreement> LogAgreement::finish() {

@@ -15,13 +15,6 @@ namespace attest {
 namespace {
 
 template <typename T>
-T load(const Sample& sample, std::size_t offset) {
-  T value;
-  std::memcpy(&value, reinterpret_cast<const char*>(&sample) + offset, sizeof value);
-  return value;
-}
-
-template <typename T>
 void store(Sample& sample, std::size_t offset, T value) {
   std::memcpy(reinterpret_cast<char*>(&sample) + offset, &value, sizeof value);
 }
@@ -183,20 +176,6 @@ std::vector<std::string_view> names_of(const StageSet& stages) {
   return names;
 }
 
-double value_of(const Channel& channel, const Sample& sample) {
-  switch (channel.type) {
-    case ChannelType::u64:
-      return static_cast<double>(load<std::uint64_t>(sample, channel.offset));
-    case ChannelType::f32:
-      return static_cast<double>(load<float>(sample, channel.offset));
-    case ChannelType::u8:
-      return load<std::uint8_t>(sample, channel.offset);
-    case ChannelType::bit:
-      return (load<std::uint32_t>(sample, channel.offset) & channel.bit) != 0 ? 1 : 0;
-  }
-  return 0;
-}
-
 void set_value(const Channel& channel, Sample& sample, double value) {
   switch (channel.type) {
     case ChannelType::u64:
@@ -206,7 +185,7 @@ void set_value(const Channel& channel, Sample& sample, double value) {
     case ChannelType::u8:
       return store(sample, channel.offset, static_cast<std::uint8_t>(value));
     case ChannelType::bit: {
-      const auto word = load<std::uint32_t>(sample, channel.offset);
+      const auto word = value_at<std::uint32_t>(sample, channel.offset);
       const std::uint32_t cleared = word & ~channel.bit;
       return store(sample, channel.offset, value != 0 ? cleared | channel.bit : cleared);
     }
@@ -224,7 +203,7 @@ void copy_value(const Channel& channel, const Sample& from, Sample& to) {
 }
 
 float float_of(const Channel& channel, const Sample& sample) {
-  return load<float>(sample, channel.offset);
+  return value_at<float>(sample, channel.offset);
 }
 
 bool same_bits(const Channel& channel, const Sample& a, const Sample& b) {
@@ -236,7 +215,7 @@ bool same_bits(const Channel& channel, const Sample& a, const Sample& b) {
 }
 
 std::uint64_t integer_of(const Channel& channel, const Sample& sample) {
-  return load<std::uint64_t>(sample, channel.offset);
+  return value_at<std::uint64_t>(sample, channel.offset);
 }
 
 }  // namespace attest

@@ -14,6 +14,7 @@
 #include <bitset>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 #include <span>
 #include <string>
@@ -106,8 +107,28 @@ std::string_view name_of(Stage stage);        // "attitude law"
 std::optional<Stage> stage_named(std::string_view name);
 std::vector<std::string_view> names_of(const StageSet& stages);
 
+// The bytes of a member. REQUIRES: T has its type.
+template <typename T>
+T value_at(const Sample& sample, std::size_t offset) {
+  T value;
+  std::memcpy(&value, reinterpret_cast<const char*>(&sample) + offset, sizeof value);
+  return value;
+}
+
 // Reads a member as double: exact for f32, u8 and bit; for u64 up to 2^53 (285 years of us).
-double value_of(const Channel& channel, const Sample& sample);
+inline double value_of(const Channel& channel, const Sample& sample) {
+  switch (channel.type) {
+    case ChannelType::u64:
+      return static_cast<double>(value_at<std::uint64_t>(sample, channel.offset));
+    case ChannelType::f32:
+      return static_cast<double>(value_at<float>(sample, channel.offset));
+    case ChannelType::u8:
+      return value_at<std::uint8_t>(sample, channel.offset);
+    case ChannelType::bit:
+      return (value_at<std::uint32_t>(sample, channel.offset) & channel.bit) != 0 ? 1 : 0;
+  }
+  return 0;
+}
 // Compares bits; every NaN equals every NaN.
 bool same_bits(const Channel& channel, const Sample& a, const Sample& b);
 // REQUIRES: 0 <= value < 2^53 for u64, an integer 0..255 for u8; any value for f32 and bit.

@@ -21,6 +21,8 @@ std::span<std::byte> Sample::outputs() {
   return std::as_writable_bytes(std::span(this, 1)).subspan(outputs_begin);
 }
 
+void Sample::clear_outputs() { std::memset(outputs().data(), 0, outputs().size()); }
+
 void Sample::copy_outputs(const Sample& from) {
   std::memcpy(outputs().data(), from.outputs().data(), outputs().size());
 }

@@ -93,7 +93,7 @@ struct Sample {
   std::span<const std::byte> outputs() const;
   std::span<std::byte> outputs();
   void copy_outputs(const Sample& from);
-  void clear_outputs() { copy_outputs({}); }
+  void clear_outputs();
 };
 
 inline constexpr std::size_t outputs_size = sizeof(Sample) - offsetof(Sample, out);

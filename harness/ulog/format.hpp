@@ -77,6 +77,9 @@ struct Format {
   std::uint32_t bytes = 0;        // 0: not measured
   std::uint32_t least_bytes = 0;  // without padding at the end
 
+  // Whether the data of a sample may have this size. REQUIRES: measured.
+  bool allows(std::size_t size) const { return size >= least_bytes && size <= bytes; }
+
   // Finds a number by its path: "roll", "q[0]", "a.b[2]". If several fields have this path, finds
   // the first. Errors: no such field; an array without an index, or with an index past its end; an
   // index for a field that is no array. REQUIRES: measured.

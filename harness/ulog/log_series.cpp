@@ -23,8 +23,8 @@ std::optional<Column> find_time(const Reader& reader, const Subscription& subscr
 }
 
 template <typename T>
-T value_in(const Data& data, const Column& column) {
-  return load_as<T>(column.type, data.bytes.data() + column.offset);
+T value_in(const char* data, const Column& column) {
+  return load_as<T>(column.type, data + column.offset);
 }
 
 // Keeps an integer from 0 to 255. Any other value, as a flag of another type, is true: 1.
@@ -37,24 +37,28 @@ bool is_integer(const LogField& field) {
   return channels()[field.channel].type == ChannelType::u64;
 }
 
-// The bytes of the field's values. They are stored from the least significant byte on.
-std::size_t bytes_of(const LogField& field) {
-  switch (channels()[field.channel].type) {
-    case ChannelType::u64:
-      return sizeof(std::uint64_t);
-    case ChannelType::f32:
-      return sizeof(float);
-    default:
-      return 1;
-  }
+// The type of a number in a log whose bytes a channel has.
+Type type_of(const Channel& channel) {
+  if (channel.type == ChannelType::f32) return Type::f32;
+  return channel.type == ChannelType::u64 ? Type::u64 : Type::u8;
 }
 
 }  // namespace
 
 LogSeries::LogSeries(LogTopic topic) : topic_(std::move(topic)) {
   for (const LogField& field : topic_.fields) {
-    bytes_.push_back(bytes_of(field));
-    row_bytes_ += bytes_.back();
+    const Channel& channel = channels()[field.channel];
+    add({channel.offset, channel.offset, bytes_of(type_of(channel))}, of_sample_);
+  }
+}
+
+void LogSeries::add(const SameBytes& more, std::vector<SameBytes>& parts) {
+  const bool follows = !parts.empty() && parts.back().from + parts.back().count == more.from &&
+                       parts.back().to + parts.back().count == more.to;
+  if (follows) {
+    parts.back().count += more.count;
+  } else {
+    parts.push_back(more);
   }
 }
 
@@ -74,12 +78,23 @@ void LogSeries::locate(const Reader& reader, const Subscription& subscription) {
   time_ = find_time(reader, subscription, "timestamp");
   sample_time_ = find_time(reader, subscription, "timestamp_sample");
   places_.clear();
+  of_row_.clear();
+  converted_.clear();
   for (const LogField& field : topic_.fields) {
-    places_.push_back(find_place(reader, subscription, field));
+    const Channel& channel = channels()[field.channel];
+    const Place place = find_place(reader, subscription, field);
+    if (place.column && !place.state && place.column->type == type_of(channel)) {
+      add({place.column->offset, channel.offset, bytes_of(place.column->type)}, of_row_);
+    } else {
+      converted_.push_back(places_.size());
+    }
+    places_.push_back(place);
   }
+  // The samples that were added have the same format, because they are of the same topic.
+  if (subscription.format) row_bytes_ = subscription.format->least_bytes;
 }
 
-std::uint64_t LogSeries::bits_of(const Data& data, std::size_t field) const {
+std::uint64_t LogSeries::bits_of(const char* data, std::size_t field) const {
   const Place& place = places_[field];
   const bool is_byte = channels()[topic_.fields[field].channel].type == ChannelType::u8;
   if (!place.column) {
@@ -98,14 +113,16 @@ bool LogSeries::count(const Reader& reader, const Data& data) {
     ++without_time_;
     return false;
   }
-  const auto time = value_in<std::uint64_t>(data, *time_);
+  const auto time = load<std::uint64_t>(data.bytes.data() + time_->offset);
   if (size_ > 0 && time <= newest_) {
     ++left_out_;
     return false;
   }
   newest_ = time;
   const auto before = std::exchange(newest_sample_time_, std::nullopt);
-  if (sample_time_) newest_sample_time_ = value_in<std::uint64_t>(data, *sample_time_);
+  if (sample_time_) {
+    newest_sample_time_ = load<std::uint64_t>(data.bytes.data() + sample_time_->offset);
+  }
   if (!newest_sample_time_ || (before && *newest_sample_time_ < *before)) has_sample_times_ = false;
   ++size_;
   return true;
@@ -113,29 +130,19 @@ bool LogSeries::count(const Reader& reader, const Data& data) {
 
 void LogSeries::add(const Reader& reader, const Data& data) {
   if (!count(reader, data)) return;
-  times_.push_back(newest_);
-  sample_times_.push_back(newest_sample_time_);
-  unsigned char* at = values_.append(row_bytes_);
-  for (std::size_t i = 0; i < places_.size(); ++i) {
-    const std::uint64_t bits = bits_of(data, i);
-    std::memcpy(at, &bits, bytes_[i]);
-    at += bytes_[i];
-  }
+  times_.push_back({newest_, newest_sample_time_});
+  std::memcpy(rows_.append(row_bytes_), data.bytes.data(), row_bytes_);
 }
 
-void LogSeries::forget_before(std::size_t row) {
-  const std::size_t rows = row - forgotten_;
-  if (rows == 0) return;
+void LogSeries::forget(std::size_t rows) {
   times_.drop_front(rows);
-  sample_times_.drop_front(rows);
-  values_.drop_front(rows * row_bytes_);
-  forgotten_ = row;
+  rows_.drop_front(rows * row_bytes_);
+  forgotten_ += rows;
 }
 
 void LogSeries::restart() {
   times_.clear();
-  sample_times_.clear();
-  values_.clear();
+  rows_.clear();
   size_ = left_out_ = absurd_ = without_time_ = forgotten_ = 0;
   newest_ = 0;
   newest_sample_time_.reset();
@@ -159,20 +166,26 @@ std::vector<std::size_t> LogSeries::logged_channels() const {
 }
 
 void LogSeries::copy(std::size_t row, Sample& to) const {
-  if (row_bytes_ == 0) return;
-  const unsigned char* at = &values_[(row - forgotten_) * row_bytes_];
-  const auto table = channels();
-  for (std::size_t i = 0; i < bytes_.size(); ++i) {
-    const Channel& channel = table[topic_.fields[i].channel];
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, at, bytes_[i]);
-    at += bytes_[i];
+  if (topic_.fields.empty()) return;
+  const char* const data = &rows_[(row - forgotten_) * row_bytes_];
+  copy_all(of_row_, data, reinterpret_cast<char*>(&to));
+  for (const std::size_t field : converted_) {
+    const Channel& channel = channels()[topic_.fields[field].channel];
+    const std::uint64_t bits = bits_of(data, field);
     if (channel.type == ChannelType::f32) {
       set_value(channel, to, std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
     } else {
       set_integer(channel, to, bits);
     }
   }
+}
+
+void LogSeries::copy_fields(const Sample& from, Sample& to) const {
+  copy_all(of_sample_, reinterpret_cast<const char*>(&from), reinterpret_cast<char*>(&to));
+}
+
+void LogSeries::copy_all(const std::vector<SameBytes>& parts, const char* from, char* to) {
+  for (const SameBytes& part : parts) std::memcpy(to + part.to, from + part.from, part.count);
 }
 
 }  // namespace attest::ulog

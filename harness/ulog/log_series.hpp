@@ -26,6 +26,7 @@ class Queue {
   }
   void drop_front(std::size_t count) {
     begin_ += count;
+    if (begin_ == values_.size()) return clear();
     if (2 * begin_ < values_.size()) return;  // so that each element moves once at most on average
     values_.erase(values_.begin(), values_.begin() + static_cast<std::ptrdiff_t>(begin_));
     begin_ = 0;
@@ -34,7 +35,13 @@ class Queue {
     values_.clear();
     begin_ = 0;
   }
+  std::size_t size() const { return values_.size() - begin_; }
+  bool empty() const { return size() == 0; }
   const T& operator[](std::size_t index) const { return values_[begin_ + index]; }
+  const T& back() const { return values_.back(); }
+  T& back() { return values_.back(); }
+  T* begin() { return values_.data() + begin_; }
+  T* end() { return values_.data() + values_.size(); }
 
  private:
   std::vector<T> values_;
@@ -67,7 +74,9 @@ class LogSeries {
   // Counts a sample that is left out because its time is absurd.
   void leave_out_absurd() { ++absurd_, ++left_out_; }
   // Ends the keeping of all samples before `row`. REQUIRES: row <= size().
-  void forget_before(std::size_t row);
+  void forget_before(std::size_t row) {
+    if (row > forgotten_) forget(row - forgotten_);
+  }
   // Forgets and counts no sample, so that the log can be read again.
   void restart();
 
@@ -82,11 +91,11 @@ class LogSeries {
   bool has_sample_times() const { return has_sample_times_; }
 
   // REQUIRES, here and in copy(): `row` was added and not forgotten.
-  std::uint64_t time(std::size_t row) const { return times_[row - forgotten_]; }  // us
+  std::uint64_t time(std::size_t row) const { return times_[row - forgotten_].published_us; }
   // The field `timestamp_sample`: the time of the sensor sample behind this sample. Empty if the
   // topic has no such field.
   std::optional<std::uint64_t> sample_time(std::size_t row) const {
-    return sample_times_[row - forgotten_];
+    return times_[row - forgotten_].sampled_us;
   }
 
   // Whether the log has the topic, perhaps without samples.
@@ -98,6 +107,8 @@ class LogSeries {
 
   // Writes the values of sample `row`. A field that the log does not have is LogField::if_absent.
   void copy(std::size_t row, Sample& to) const;
+  // Copies the values of the topic.
+  void copy_fields(const Sample& from, Sample& to) const;
 
  private:
   // Where a field is in the log; without `column`, the log does not have it. With `state`, the
@@ -107,25 +118,38 @@ class LogSeries {
     std::optional<std::uint8_t> state;
   };
 
+  // Successive bytes that are the same in the two places of a copy.
+  struct SameBytes {
+    std::size_t from, to, count;
+  };
+  struct Times {
+    std::uint64_t published_us;
+    std::optional<std::uint64_t> sampled_us;
+  };
+
   Place find_place(const Reader& reader, const Subscription& subscription,
                    const LogField& field) const;
-  std::uint64_t bits_of(const Data& data, std::size_t field) const;
+  static void add(const SameBytes& more, std::vector<SameBytes>& parts);
+  static void copy_all(const std::vector<SameBytes>& parts, const char* from, char* to);
+  std::uint64_t bits_of(const char* data, std::size_t field) const;
+  void forget(std::size_t rows);
 
   LogTopic topic_;
-  std::vector<std::size_t> bytes_;      // of each field in values_
-  std::size_t row_bytes_ = 0;           // of a sample there
   std::optional<std::size_t> located_;  // index of the subscription of these places
   std::optional<Column> time_, sample_time_;
-  std::vector<Place> places_;  // of the topic's fields
+  std::vector<Place> places_;           // of the topic's fields
+  std::vector<SameBytes> of_row_;       // for copy()
+  std::vector<std::size_t> converted_;  // the fields that are not in of_row_
+  std::vector<SameBytes> of_sample_;    // for copy_fields()
   std::size_t size_ = 0, left_out_ = 0, absurd_ = 0, without_time_ = 0;
   std::uint64_t newest_ = 0;
   std::optional<std::uint64_t> newest_sample_time_;
   bool has_sample_times_ = true;
 
   std::size_t forgotten_ = 0;  // rows; the others are here
-  Queue<std::uint64_t> times_;
-  Queue<std::optional<std::uint64_t>> sample_times_;
-  Queue<unsigned char> values_;  // sample by sample, each field in the bytes of its channel
+  Queue<Times> times_;
+  std::size_t row_bytes_ = 0;
+  Queue<char> rows_;  // the data of each sample, as in the log
 };
 
 }  // namespace attest::ulog

@@ -75,19 +75,18 @@ class LoggedSteps::Inputs {
   Inputs(LoggedModule& from)
       : steps_(from.log.steps()),
         setpoint_topic_(info_of(from.log.module()).setpoint_topic),
-        last_(from.first),
-        held_(from.first) {
+        last_(from.first) {
     for (LogSeries& series : from.log.series()) {
       if (series.is_output() || &series == &steps_) continue;
       topics_.emplace_back(series, from.log.module(), from.rules);
     }
   }
 
-  // REQUIRES: the series have the step, and all samples up to its time.
-  PairedStep next() {
+  // Adds the next step. REQUIRES: the series have the step, and all samples up to its time.
+  void next(PairedSteps& steps) {
     const std::uint64_t time = steps_.time(tick_);
-    const auto sample_time = steps_.sample_time(tick_);
-    Sample now = held_;
+    steps.push_back({last_, steps_.sample_time(tick_), 0});
+    Sample& now = steps.back().sample;
     for (PendingRows& rows : topics_) {
       const auto newest_us = rows.advance_to(time, last_, now);
       if (newest_us && rows.name() == setpoint_topic_) setpoint_us_ = *newest_us;
@@ -95,9 +94,9 @@ class LoggedSteps::Inputs {
     steps_.copy(tick_++, now);
     steps_.forget_before(tick_);
     now.in.timestamp = time;
-    held_ = last_ = now;
-    held_.in.updated = 0;
-    return {last_, sample_time, setpoint_us_};
+    steps.back().setpoint_us = setpoint_us_;
+    last_ = now;
+    last_.in.updated = 0;
   }
 
   void forget() {
@@ -109,8 +108,7 @@ class LoggedSteps::Inputs {
   std::string_view setpoint_topic_;
   std::uint64_t setpoint_us_ = 0;
   std::vector<PendingRows> topics_;
-  Sample last_;
-  Sample held_;  // the inputs of the last step, of which none is new
+  Sample last_;  // the inputs of the last step, of which none is new
   std::size_t tick_ = 0;
 };
 
@@ -129,22 +127,22 @@ Result<LoggedSteps> LoggedSteps::open(LoggedModule& from) {
   return LoggedSteps(from, *std::move(reader));
 }
 
-Result<PairedStep> LoggedSteps::next() {
+Result<const PairedStep*> LoggedSteps::next() {
   while (read_ < from_.steps && last_steps_.size() < most_last_steps) {
     if (auto read = read_step(); !read) return tl::unexpected(read.error());
   }
-  PairedStep step = last_steps_.front();
-  last_steps_.pop_front();
-  for (const PairedOutput& output : outputs_) output.repeat(before_, step.sample);
-  before_ = step.sample;
-  return step;
+  PairedStep& step = *last_steps_.begin();
+  for (const PairedOutput& output : outputs_) output.repeat(last_.sample, step.sample);
+  last_ = step;
+  last_steps_.drop_front(1);
+  return &last_;
 }
 
 Result<void> LoggedSteps::read_step() {
   if (read_ == 0) {
     if (auto read = read_outputs_before(0); !read) return read;
   }
-  last_steps_.push_back(inputs_->next());
+  inputs_->next(last_steps_);
   return ++read_ < from_.steps ? read_outputs_before(read_) : read_to_end();
 }
 

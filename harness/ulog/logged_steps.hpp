@@ -31,8 +31,9 @@ class LoggedSteps {
   LoggedSteps& operator=(LoggedSteps&&) = delete;
   ~LoggedSteps();
 
-  // REQUIRES: it was called less than LoggedModule::steps times.
-  Result<PairedStep> next();
+  // The next step, valid until the next call. REQUIRES: it was called less than LoggedModule::steps
+  // times.
+  Result<const PairedStep*> next();
 
   // Complete after the last step.
   const std::vector<PairedOutput>& outputs() const { return outputs_; }
@@ -51,7 +52,7 @@ class LoggedSteps {
   std::vector<PairedOutput> outputs_;
   PairedSteps last_steps_;  // that were read, and are not yet returned
   std::size_t read_ = 0;    // steps
-  Sample before_{};         // the step returned last
+  PairedStep last_;         // the step returned last
 };
 
 }  // namespace attest::ulog

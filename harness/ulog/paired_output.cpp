@@ -10,8 +10,10 @@ namespace {
 // The step of this time; null if there is none. REQUIRES: the times of the steps do not decrease.
 template <typename TimeOf>
 PairedStep* find(PairedSteps& steps, std::uint64_t time, TimeOf time_of) {
+  constexpr std::ptrdiff_t few = 4;  // it is nearly always one of the last
+  const bool is_near = steps.end() - steps.begin() > few && time_of(*(steps.end() - few)) < time;
   const auto found = std::lower_bound(
-      steps.begin(), steps.end(), time,
+      is_near ? steps.end() - few : steps.begin(), steps.end(), time,
       [&](const PairedStep& step, std::uint64_t wanted) { return time_of(step) < wanted; });
   return found == steps.end() || time_of(*found) != time ? nullptr : &*found;
 }
@@ -70,9 +72,7 @@ PairedStep* PairedOutput::step_of(std::size_t row, PairedSteps& steps) const {
 
 void PairedOutput::repeat(const Sample& before, Sample& sample) const {
   if (value_of(published_, sample) != 0) return;
-  for (const LogField& field : series_.topic().fields) {
-    copy_value(channels()[field.channel], before, sample);
-  }
+  series_.copy_fields(before, sample);
 }
 
 }  // namespace attest::ulog

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <optional>
 
 #include "harness/ulog/flight_log.hpp"
@@ -19,7 +18,7 @@ struct PairedStep {
 };
 
 // The last steps, to which outputs can be paired.
-using PairedSteps = std::deque<PairedStep>;
+using PairedSteps = Queue<PairedStep>;
 
 class PairedOutput {
  public:

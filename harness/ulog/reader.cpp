@@ -21,7 +21,6 @@ constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
 constexpr std::uint64_t most_file_bytes = std::uint64_t{16} << 30;
 constexpr std::string_view sync_magic = "\x2F\x73\x13\x20\x25\x0C\xBB\x12";
 constexpr std::size_t header_bytes = 16;
-constexpr std::size_t head_bytes = 3;  // of a message: u16 size of its body, type
 constexpr std::size_t flag_bits_bytes = 40;
 constexpr std::uint64_t has_appended_data = 1;  // bit of incompatible_flags
 
@@ -150,7 +149,7 @@ void Reader::fill_buffer(std::uint64_t offset) {
   buffer_end_ = offset + kept + read;
 }
 
-Result<bool> Reader::next(Message& message) {
+Result<bool> Reader::next_of_any_kind(Message& message) {
   while (true) {
     if (read_failure_) return tl::unexpected(*read_failure_);
     if (position_ >= end_) {
@@ -212,7 +211,7 @@ bool Reader::accept_data(std::string_view body, Message& message) {
   if (!found) return refuse(unknown_id, fmt::format("data of msg_id {}", id));
   const Format* const format = found->format;
   if (!format) return refuse(bad_format, "data without format: " + found->topic);
-  if (bytes.size() < format->least_bytes || bytes.size() > format->bytes) {
+  if (!format->allows(bytes.size())) {
     return refuse(wrong_size, fmt::format("{} bytes of {}, which has {}", bytes.size(),
                                           format->name, format->bytes));
   }

@@ -15,6 +15,7 @@
 // next sync message. If there is none, the rest of the log (or of an appended part) is not read.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <deque>
@@ -27,6 +28,8 @@
 #include "harness/ulog/format.hpp"
 
 namespace attest::ulog {
+
+inline constexpr std::size_t head_bytes = 3;  // of a message: u16 size of its body, type
 
 // An instance of a topic. Data messages refer to it by its number.
 struct Subscription {
@@ -143,7 +146,9 @@ class Reader {
   // Errors: no such topic, instance or field so far; its format cannot be used.
   Result<Column> find(std::string_view topic, std::uint8_t multi_id, std::string_view path) const;
   // Reads the next valid message. False: after the last one. Errors: the file cannot be read.
-  Result<bool> next(Message& message);
+  Result<bool> next(Message& message) {
+    return take_data(message) ? Result<bool>(true) : next_of_any_kind(message);
+  }
 
   // The state before the last message, so that it can be read again.
   struct Place {
@@ -171,6 +176,9 @@ class Reader {
   Reader() = default;
   Result<void> read_header();
   void start();
+  // next() for intact data in the buffer, as nearly all messages are. False: it is another message.
+  bool take_data(Message& message);
+  Result<bool> next_of_any_kind(Message& message);
   // The bytes of the file from `offset` on: `count` or more, at most 1 MiB; fewer only up to end_.
   std::string_view bytes_at(std::uint64_t offset, std::size_t count);
   void fill_buffer(std::uint64_t offset);
@@ -202,5 +210,26 @@ class Reader {
   Damage damage_;
   std::uint64_t unknown_messages_ = 0;
 };
+
+inline bool Reader::take_data(Message& message) {
+  constexpr std::size_t id_bytes = sizeof(std::uint16_t);
+  const std::uint64_t end = std::min(buffer_end_, end_);
+  if (position_ < buffer_begin_ || position_ + head_bytes + id_bytes > end) return false;
+  const char* const bytes = buffer_.get() + (position_ - buffer_begin_);
+  const std::size_t body_bytes = load<std::uint16_t>(bytes);
+  if (bytes[2] != 'D' || body_bytes < id_bytes || position_ + head_bytes + body_bytes > end) {
+    return false;
+  }
+  const std::size_t id = load<std::uint16_t>(bytes + head_bytes);
+  const Subscription* const found = id < active_.size() ? active_[id] : nullptr;
+  const std::string_view data(bytes + head_bytes + id_bytes, body_bytes - id_bytes);
+  if (!found || !found->format || !found->format->allows(data.size()) || read_failure_) {
+    return false;
+  }
+  offset_ = position_;
+  position_ += head_bytes + body_bytes;
+  message = Data{found, data};
+  return true;
+}
 
 }  // namespace attest::ulog

@@ -6,10 +6,6 @@
 namespace attest::ulog {
 namespace {
 
-// The logger writes a sample within milliseconds. A gap of all topics may be longer, so the samples
-// that follow decide. A smaller jump costs the topic no more samples than those of this time.
-constexpr std::uint64_t most_ahead_us = 50'000;
-
 // A topic that is logged slowly is up to about this much behind the others.
 constexpr std::uint64_t most_behind_us = 1'000'000;
 
@@ -54,7 +50,7 @@ TimeCheck::Topic& TimeCheck::topic_of(const Reader& reader, const Subscription& 
   return topic;
 }
 
-Result<TimeFit> TimeCheck::check(Reader& reader, Message& message) {
+Result<TimeFit> TimeCheck::check_closely(Reader& reader, Message& message) {
   const Data& data = std::get<Data>(message);
   const std::size_t index = data.subscription->index;
   Topic& topic = topic_of(reader, *data.subscription);

@@ -82,8 +82,9 @@ class TicksOfLog final : public LoggedTicks {
     while (tick_ < from_.steps && part.samples.size() < most) {
       const auto step = steps_->next();
       if (!step) return tl::unexpected(step.error());
-      part.samples.push_back(completed(step->sample));
-      setpoints_.push_back({setpoint_.next(part.samples.back()), step->setpoint_us});
+      part.samples.push_back((*step)->sample);
+      complete(part.samples.back());
+      setpoints_.push_back({setpoint_.next(part.samples.back()), (*step)->setpoint_us});
     }
     part.parameters = changes_in(parameters_, first, part.samples.size());
     return {};
@@ -139,7 +140,7 @@ class TicksOfLog final : public LoggedTicks {
     for (std::size_t tick = 0; tick < from_.steps; ++tick) {
       const auto step = steps->next();
       if (!step) return tl::unexpected(step.error());
-      if (tick == 0) look_at_first(step->sample);
+      if (tick == 0) look_at_first((*step)->sample);
     }
     for (const PairedOutput& output : steps->outputs()) outputs_.push_back(output.logged());
     return {};
@@ -154,8 +155,8 @@ class TicksOfLog final : public LoggedTicks {
     resets_before_ = step.attitude_in.vehicle_attitude.quat_reset_counter;
   }
 
-  // The next tick, with what a log does not say in the samples of its topics.
-  Sample completed(Sample step) {
+  // Adds to the next tick what a log does not say in the samples of its topics.
+  void complete(Sample& step) {
     if (from_.rules == LogRules::cascade && from_.log.module() == Module::attitude_unit) {
       auto& counter = step.attitude_in.vehicle_attitude.quat_reset_counter;
       counter = static_cast<std::uint8_t>(counter - resets_before_);
@@ -164,7 +165,6 @@ class TicksOfLog final : public LoggedTicks {
       if (updates_[next_update_++] > 0) set_value(update_, step, 1);
     }
     ++tick_;
-    return step;
   }
 
   LoggedModule from_;

@@ -27,9 +27,6 @@ bool has_memory(Module module, const TopicAgreement& topic) {
   return module == Module::rate_unit || topic.topic != memoryless;
 }
 
-// How well the reference agrees with a log; empty if it cannot answer.
-using OfReference = std::optional<std::vector<TopicAgreement>>;
-
 std::string why_it_fails(const TopicAgreement& topic, const LogLimits& limits) {
   if (topic.non_finite > 0) {
     return fmt::format("NaN or infinity in {} samples of {} where the log has numbers",
@@ -56,31 +53,19 @@ std::vector<bool> ticks_but(const std::vector<LoggedSetpoint>& ticks, Known most
   return leaves_out;
 }
 
-// Finds out which ticks and which outputs of a log can judge a port.
+// Finds out which outputs of a log can judge a port.
 class Comparable {
  public:
-  // `reference(most)`: how well the reference agrees with the log at the ticks of which at most
-  // this is unknown. Empty if the reference cannot answer; then the log is not compared with it.
-  template <typename Reference>
-  static Result<Comparable> of(const LoggedUnit& log, const LogLimits& limits,
-                               Reference reference) {
-    Comparable made(log, limits);
-    for (const Known most : {Known::if_every_step, Known::all}) {
-      if (most == Known::if_every_step && !log.has_every_step) continue;
-      made.most_ = most;
-      auto found = reference(most);
-      if (!found) return tl::unexpected(found.error());
-      made.take(*std::move(found));
-      if (made.agrees_with_reference(memoryless)) break;
-    }
-    return made;
-  }
+  // `of_reference`: how well the reference agrees with the log. Without topics, the log is not
+  // compared with it.
+  Comparable(const LoggedUnit& log, const LogLimits& limits,
+             std::vector<TopicAgreement> of_reference)
+      : log_(log), limits_(limits), of_reference_(std::move(of_reference)) {}
 
-  bool has_reference() const { return has_reference_; }
-
-  // The ticks to leave out, of these.
-  std::vector<bool> leaves_out(const std::vector<LoggedSetpoint>& ticks) const {
-    return ticks_but(ticks, most_);
+  bool agrees_with_reference(std::string_view topic) const {
+    return std::all_of(of_reference_.begin(), of_reference_.end(), [&](const TopicAgreement& one) {
+      return one.topic != topic || one.agrees(limits_);
+    });
   }
 
   std::string why_not(const TopicAgreement& topic) const {
@@ -108,13 +93,6 @@ class Comparable {
   }
 
  private:
-  Comparable(const LoggedUnit& log, const LogLimits& limits) : log_(log), limits_(limits) {}
-
-  void take(OfReference of_reference) {
-    has_reference_ = of_reference.has_value();
-    of_reference_ = std::move(of_reference).value_or(std::vector<TopicAgreement>());
-  }
-
   std::string why_unlike_reference(const TopicAgreement& topic) const {
     const char* const unknown =
         log_.module == Module::rate_unit ? "the integral and filters" : "filters and headings";
@@ -127,21 +105,8 @@ class Comparable {
                        100 * topic.part_within(), topic.topic, limits_.within, why);
   }
 
-  const TopicAgreement* find(std::string_view topic) const {
-    const auto found = std::find_if(of_reference_.begin(), of_reference_.end(),
-                                    [&](const TopicAgreement& one) { return one.topic == topic; });
-    return found == of_reference_.end() ? nullptr : &*found;
-  }
-
-  bool agrees_with_reference(std::string_view topic) const {
-    const TopicAgreement* const found = find(topic);
-    return found == nullptr || found->agrees(limits_);
-  }
-
   const LoggedUnit& log_;
   const LogLimits& limits_;
-  Known most_ = Known::all;
-  bool has_reference_ = false;
   std::vector<TopicAgreement> of_reference_;
 };
 
@@ -176,56 +141,63 @@ class LogJudge {
         most_ticks_(most_ticks),
         parameters_(parameters) {}
 
-  // Empty if the reference has a fault, for example because it does not have the profile.
-  Result<OfReference> of_reference(Known most) {
-    const auto host = open_reference();
-    ReplayedPort reference(*host, subject_, parameters_.as_flown);
-    LogAgreement agreement(log_.trace.present, limits_);
-    std::optional<PortFault> fault;
-    const auto read = for_each_part_of(
-        *ticks_, most_ticks_, [&](const Trace& logged, std::size_t at, bool is_last) {
-          Trace answered = reference.inputs(logged, at);
-          fault = reference.answer(answered, at, is_last);
-          if (!fault)
-            agreement.add(answered, logged, answered, ticks_but(ticks_->setpoints(), most));
-          return !fault;
-        });
-    if (!read) return tl::unexpected(read.error());
-    if (fault) return std::nullopt;
-    return agreement.finish();
+  // Compares the port at the ticks that the log shows well enough: also those that depend on every
+  // step, if the reference agrees with them. Sets the topics and the ticks, or the verdict of a
+  // port with a fault.
+  Result<void> compare(PortHost& port, LogResult& found) {
+    for (const Known most : {Known::if_every_step, Known::all}) {
+      if (most == Known::if_every_step && !log_.has_every_step) continue;
+      auto of_reference = drive(port, most, found);
+      if (!of_reference) return tl::unexpected(of_reference.error());
+      const Comparable comparable(log_, limits_, *std::move(of_reference));
+      for (TopicAgreement& topic : found.topics) topic.not_judged = comparable.why_not(topic);
+      if (comparable.agrees_with_reference(memoryless)) break;
+    }
+    return {};
   }
 
-  // Sets the topics and the ticks, unless the port has a fault.
-  Result<std::optional<PortFault>> drive(PortHost& port, const Comparable& comparable,
-                                         LogResult& found) {
+ private:
+  // Gives the ticks to the reference and to the port, and compares those of which at most this is
+  // unknown. Returns how well the reference agrees with the log. Without topics: it cannot answer,
+  // for example because it does not have the profile, or the port has a fault.
+  Result<std::vector<TopicAgreement>> drive(PortHost& port, Known most, LogResult& found) {
     const auto host = open_reference();
     ReplayedPort reference(*host, subject_, parameters_.as_flown);
     ReplayedPort judged(port, subject_, parameters_.of_port);
-    LogAgreement agreement(log_.trace.present, limits_);
+    LogAgreement of_reference(log_.trace.present, limits_), of_port(log_.trace.present, limits_);
     std::optional<PortFault> fault;
+    bool fails = false;  // the reference
+    found.got.samples.clear();
+    found.topics.clear();
     const auto ticks = for_each_part_of(
         *ticks_, most_ticks_, [&](const Trace& logged, std::size_t at, bool is_last) {
           Trace as_flown = reference.inputs(logged, at);
-          if (comparable.has_reference()) reference.answer(as_flown, at, is_last);
+          fails = has_reference_ && reference.answer(as_flown, at, is_last);
+          if (fails) return false;
           Trace got = judged.inputs(logged, at);
           fault = judged.answer(got, at, is_last);
           if (!log_.ticks) append(got, found.got);
           if (fault) return false;
-          const auto leaves_out = comparable.leaves_out(ticks_->setpoints());
-          agreement.add(got, logged, as_flown, leaves_out);
+          const auto leaves_out = ticks_but(ticks_->setpoints(), most);
+          if (has_reference_) of_reference.add(as_flown, logged, as_flown, leaves_out);
+          of_port.add(got, logged, as_flown, leaves_out);
           return true;
         });
     if (!ticks) return tl::unexpected(ticks.error());
+    if (fails) {
+      has_reference_ = false;
+      return drive(port, most, found);
+    }
     if (fault) {
       found.got.keep_first(fault->tick);
-      return fault;
+      judge(*fault, found.result);
+      return std::vector<TopicAgreement>();
     }
     found.result.ticks = *ticks;
-    found.topics = agreement.finish();
-    return std::nullopt;
+    found.topics = of_port.finish();
+    return has_reference_ ? of_reference.finish() : std::vector<TopicAgreement>();
   }
 
- private:
   static void append(const Trace& part, Trace& whole) {
     whole.samples.insert(whole.samples.end(), part.samples.begin(), part.samples.end());
   }
@@ -236,6 +208,7 @@ class LogJudge {
   const LogLimits& limits_;
   std::size_t most_ticks_;
   const LogParameters& parameters_;
+  bool has_reference_ = true;  // it can answer
 };
 
 std::string why_no_step(const SingleSteps& steps, const std::string& not_judged) {
@@ -254,15 +227,7 @@ Result<void> compare_ticks(const LoggedUnit& log, const ModuleUnderTest& subject
                            std::size_t most_ticks, LogResult& found) {
   found.got.source = log.trace.source;
   found.got.present = log.trace.present;
-  LogJudge judging(log, subject, limits, parameters, most_ticks);
-  const auto comparable =
-      Comparable::of(log, limits, [&](Known most) { return judging.of_reference(most); });
-  if (!comparable) return tl::unexpected(comparable.error());
-  const auto fault = judging.drive(host, *comparable, found);
-  if (!fault) return tl::unexpected(fault.error());
-  if (*fault) judge(**fault, found.result);
-  for (TopicAgreement& topic : found.topics) topic.not_judged = comparable->why_not(topic);
-  return {};
+  return LogJudge(log, subject, limits, parameters, most_ticks).compare(host, found);
 }
 
 }  // namespace

@@ -277,8 +277,11 @@ class SingleStepJudge {
         is_of_kind.push_back(setpoint.is_own == kind.has_own_setpoint &&
                              (setpoint.is_own || is_young));
       }
+      const auto steps =
+          static_cast<std::size_t>(std::count(is_of_kind.begin(), is_of_kind.end(), true));
+      kind.steps += steps;
+      if (steps == 0) continue;
       const Trace wanted = only(want, is_of_kind), reference = only(as_flown, is_of_kind);
-      kind.steps += wanted.samples.size();
       kind.of_port.add(only(got, is_of_kind), wanted, reference);
       kind.of_reference.add(reference, wanted, reference);
     }
