@@ -1,34 +1,18 @@
 // The suite at one rate on the reference at the numeric level, from the case files to the verdicts,
 // with one, two and (given four processors) four workers. Further runs have the port in the judge's
 // process: the floor of the cost of separate processes. At one rate this cost is highest, because
-// few vectors share a process. It is measured as CPU time, which other programs on the machine
-// change less than the time that passes.
+// few vectors share a process. It is measured as CPU time.
 #include <thread>
 
 #include <benchmark/benchmark.h>
-#include <sys/resource.h>
 
+#include "benchmarks/cpu_time.hpp"
 #include "harness/casefile/select.hpp"
 #include "harness/plant/vehicle_models.hpp"
 #include "harness/verify/case_job.hpp"
 
 namespace attest::bench {
 namespace {
-
-double seconds(const timeval& time) {
-  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-}
-
-// CPU time of this process and of all processes that it started and that have ended [s].
-double cpu_seconds() {
-  double sum = 0;
-  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
-    rusage usage{};
-    ::getrusage(who, &usage);
-    sum += seconds(usage.ru_utime) + seconds(usage.ru_stime);
-  }
-  return sum;
-}
 
 // A benchmark with manual time reports CPU time.
 void suite(benchmark::State& state, int processes, bool isolated = true) {

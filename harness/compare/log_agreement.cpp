@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <initializer_list>
 #include <limits>
 #include <map>
 #include <span>
@@ -106,12 +105,10 @@ struct TickWindow {
   }
 
   void keep_last() {
-    const std::size_t ticks = logged.size();
     for (Samples* samples : {&got, &logged, &reference}) samples->keep_last();
-    const std::size_t dropped = ticks - logged.size();
-    const auto begin = leaves_out.begin();
-    leaves_out.erase(begin, begin + static_cast<std::ptrdiff_t>(dropped));
-    first_tick += dropped;
+    const auto kept = static_cast<std::ptrdiff_t>(logged.size());
+    first_tick += leaves_out.size() - logged.size();
+    leaves_out.erase(leaves_out.begin(), leaves_out.end() - kept);
   }
 };
 
@@ -128,17 +125,13 @@ class Deviations {
 
   double largest() const { return largest_; }
 
-  // Of each part: the deviation that this part does not exceed (nearest rank). Ascending parts.
-  // REQUIRES: add() is not called again.
-  std::vector<double> quantiles(std::initializer_list<double> parts) {
+  // The deviation that this part of them does not exceed (nearest rank). REQUIRES: add() is not
+  // called again.
+  double quantile(double part) {
+    if (count_ == 0) return 0;
     if (!rounded_.empty()) round_all();
-    std::sort(exact_.begin(), exact_.end());
-    std::vector<double> found;
-    for (const double part : parts) {
-      const auto rank = static_cast<std::size_t>(std::ceil(part * static_cast<double>(count_)));
-      found.push_back(count_ == 0 ? 0 : std::min(at_rank(rank), largest_));
-    }
-    return found;
+    const auto rank = static_cast<std::size_t>(std::ceil(part * static_cast<double>(count_)));
+    return std::min(at_rank(rank), largest_);
   }
 
  private:
@@ -154,8 +147,12 @@ class Deviations {
     exact_.clear();
   }
 
-  double at_rank(std::size_t rank) const {
-    if (rounded_.empty()) return exact_[rank - 1];
+  double at_rank(std::size_t rank) {
+    if (rounded_.empty()) {
+      const auto nth = exact_.begin() + static_cast<std::ptrdiff_t>(rank - 1);
+      std::nth_element(exact_.begin(), nth, exact_.end());
+      return *nth;
+    }
     auto at = rounded_.begin();
     for (std::size_t up_to = at->second; up_to < rank; up_to += at->second) ++at;
     return at->first;
@@ -185,11 +182,10 @@ class Agreement {
   }
 
   TopicAgreement finish() {
-    const auto quantiles = deviations_.quantiles({0.5, 0.9, 0.99, 1});
-    found_.median = quantiles[0];
-    found_.p90 = quantiles[1];
-    found_.p99 = quantiles[2];
-    found_.largest = quantiles[3];
+    found_.median = deviations_.quantile(0.5);
+    found_.p90 = deviations_.quantile(0.9);
+    found_.p99 = deviations_.quantile(0.99);
+    found_.largest = deviations_.quantile(1);
     return found_;
   }
 
@@ -223,7 +219,7 @@ class Agreement {
   }
 
   double deviation_at(std::size_t at, std::size_t field) const {
-    const Channel& channel = channels()[field];
+    const Channel& channel = channels_[field];
     return attest::distance(value_of(channel, window_.got[at]),
                             value_of(channel, window_.logged[at]));
   }
@@ -239,14 +235,14 @@ class Agreement {
 
   bool reference_is_finite(std::size_t at) const {
     return std::all_of(topic_.fields.begin(), topic_.fields.end(), [&](std::size_t field) {
-      return std::isfinite(value_of(channels()[field], window_.reference[at]));
+      return std::isfinite(value_of(channels_[field], window_.reference[at]));
     });
   }
 
   bool reference_agrees(std::size_t at) const {
     if (!topic_.is_in(window_.reference[at])) return false;
     return std::all_of(topic_.fields.begin(), topic_.fields.end(), [&](std::size_t field) {
-      const Channel& channel = channels()[field];
+      const Channel& channel = channels_[field];
       return attest::distance(value_of(channel, window_.reference[at]),
                               value_of(channel, window_.logged[at])) <= limits_.within;
     });
@@ -255,7 +251,7 @@ class Agreement {
   // True if the log has a number in a field and the port has none.
   bool has_no_number(std::size_t at) const {
     return std::any_of(topic_.fields.begin(), topic_.fields.end(), [&](std::size_t field) {
-      const Channel& channel = channels()[field];
+      const Channel& channel = channels_[field];
       return !std::isfinite(value_of(channel, window_.got[at])) &&
              std::isfinite(value_of(channel, window_.logged[at]));
     });
@@ -264,7 +260,7 @@ class Agreement {
   bool is_between(std::size_t at) const {
     if (neighbours_ == LogAgreement::Neighbours::do_not_explain) return false;
     return std::all_of(topic_.fields.begin(), topic_.fields.end(), [&](std::size_t field) {
-      const Channel& channel = channels()[field];
+      const Channel& channel = channels_[field];
       if (deviation_at(at, field) <= limits_.within) return true;
       const Range range = range_around(at, channel, topic_, window_.reference);
       return range.has(value_of(channel, window_.logged[at]), limits_.within) &&
@@ -277,7 +273,7 @@ class Agreement {
   }
 
   LoggedPair pair_at(std::size_t at, std::size_t field) const {
-    const Channel& channel = channels()[field];
+    const Channel& channel = channels_[field];
     const std::uint64_t time_us = window_.logged[at].in.timestamp;
     return {window_.first_tick + at,
             time_us,
@@ -287,6 +283,7 @@ class Agreement {
             value_of(channel, window_.logged[at])};
   }
 
+  std::span<const Channel> channels_ = channels();
   Topic topic_;
   const TickWindow& window_;
   LogLimits limits_;

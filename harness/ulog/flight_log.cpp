@@ -275,7 +275,9 @@ class LogReading {
     for (const std::string& word : used) add_once(word, used_);
     const auto rate_hz = fastest_hz(log);
     const StepGaps gaps = log.step_gaps(rate_hz);
-    auto unit = unit_of_log(std::move(log), first, rules, path_.string());
+    const bool is_sparse =
+        rules == LogRules::cascade && !too_sparse(log.module(), gaps, rate_hz).empty();
+    auto unit = unit_of_log(std::move(log), first, rules, is_sparse, path_.string());
     if (!unit) return unit;
     if (log_.dropouts > 0 || log_.may_lack_samples) unit->has_every_step = false;
     if (rules == LogRules::cascade && !used.empty()) unit->has_every_step = false;

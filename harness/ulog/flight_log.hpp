@@ -73,6 +73,10 @@ struct SingleSteps {
   std::vector<LeftOut> left_out;  // the other outputs
 };
 
+namespace ulog {
+class SingleStepFinder;
+}
+
 struct LoggedUnit {
   Module module = Module::mc_att_control;
   std::string step_topic;  // "control_state"
@@ -92,6 +96,9 @@ struct LoggedUnit {
   bool has_every_step = false;
   bool begins_in_flight = false;  // then the unit's state at the first tick is not known
   double period_us = 0;  // of the loop, estimated; 0: not known, because the log does not limit it
+  // For single_steps_of(): what it would find in the ticks. Null if it has to read them, because
+  // the log was expected to judge the outputs that depend on earlier steps.
+  std::shared_ptr<const ulog::SingleStepFinder> found_steps;
   // Set if the ticks are those of single_steps_of().
   std::optional<SingleSteps> single_steps;
   // Why the outputs that depend on earlier steps cannot be computed, even approximately. Empty if

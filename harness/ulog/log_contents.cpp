@@ -26,6 +26,22 @@ struct Receiver {
   LogSeries* series;
 };
 
+// By subscription; empty: not yet known.
+template <typename Receiver>
+using Receivers = std::vector<std::optional<std::vector<Receiver>>>;
+
+// Passes over data of topics without a receiver. Their times count nevertheless.
+template <typename Receiver>
+void skip_unread(const Receivers<Receiver>& receivers, TimeCheck& times, Reader& reader) {
+  if (reader.is_appended()) return;
+  reader.skip_data([&](const Data& data) {
+    const std::size_t index = data.subscription->index;
+    const bool is_unread =
+        index < receivers.size() && receivers[index] && receivers[index]->empty();
+    return is_unread && times.fits_at_once(data);
+  });
+}
+
 class ContentsReader {
  public:
   explicit ContentsReader(Reader& reader) : reader_(reader) {
@@ -37,6 +53,7 @@ class ContentsReader {
   Result<LogContents> read() {
     Message message;
     while (true) {
+      skip_unread(receivers_, times_, reader_);
       const auto more = reader_.next(message);
       if (!more) return tl::unexpected(more.error());
       if (!*more) break;
@@ -130,7 +147,7 @@ class ContentsReader {
   TimeCheck times_;
   LogContents log_;
   bool knows_system_ = false;
-  std::vector<std::optional<std::vector<Receiver>>> receivers_;  // by subscription
+  Receivers<Receiver> receivers_;
 };
 
 }  // namespace
@@ -221,6 +238,7 @@ bool SampleReader::has_all(std::uint64_t time_us) const {
 }
 
 Result<void> SampleReader::read_message() {
+  skip_unread(receivers_, times_, reader_);
   Message message;
   const auto more = reader_.next(message);
   if (!more) return tl::unexpected(more.error());

@@ -132,6 +132,24 @@ std::optional<Unfit> SingleStepMaker::make_of_rate_unit(SingleStep& step) const 
   return is_in_use ? std::nullopt : std::optional(Unfit::other_thrust);
 }
 
+void SingleStepFinder::next(const Sample& tick, const LoggedSetpoint& setpoint) {
+  // 20,000 are 8 MB; the default log of half an hour has fewer.
+  constexpr std::size_t most_in_memory = 20'000;
+  auto step = maker_.next(tick, setpoint);
+  ++tick_;
+  if (!step) return;
+  while (parameters_.size() < changes_.size() && changes_[parameters_.size()].tick < tick_) {
+    parameters_.push_back(changes_[parameters_.size()]);
+    parameters_.back().tick = steps_;
+  }
+  with_own_setpoint_ += step->setpoint.is_own ? 1 : 0;
+  if (++steps_ <= most_in_memory) {
+    in_memory_.push_back(*step);
+  } else if (!in_memory_.empty()) {
+    std::vector<SingleStep>().swap(in_memory_);
+  }
+}
+
 void SingleStepMaker::follow_parameters() {
   for (; next_ < parameters_.size() && parameters_[next_].tick <= tick_; ++next_) {
     if (parameters_[next_].name == "MC_BAT_SCALE_EN") scales_ = parameters_[next_].value != 0;

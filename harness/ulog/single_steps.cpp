@@ -14,17 +14,16 @@ namespace attest {
 namespace {
 
 using ulog::SingleStep;
+using ulog::SingleStepFinder;
 using ulog::SingleStepMaker;
 
-// Few steps stay in memory, and are then read once. 20,000 are 8 MB; the default log of half an
-// hour has fewer.
-constexpr std::size_t most_in_memory = 20'000;
+constexpr std::size_t ticks_of_part = 1024;
 
 class SingleStepTicks final : public LoggedTicks {
  public:
   static Result<std::shared_ptr<SingleStepTicks>> open(const LoggedUnit& log) {
     std::shared_ptr<SingleStepTicks> made(new SingleStepTicks(log));
-    const auto opened = made->read_all().and_then([&] { return made->rewind(); });
+    const auto opened = made->find_all().and_then([&] { return made->rewind(); });
     if (!opened) return tl::unexpected(opened.error());
     return made;
   }
@@ -34,7 +33,7 @@ class SingleStepTicks final : public LoggedTicks {
 
   Result<void> rewind() override {
     step_ = 0;
-    return has_all_ ? Result<void>() : rewind_file();
+    return found_->has_all() ? Result<void>() : rewind_file();
   }
 
   Result<void> next_part(std::size_t most, Trace& part) override {
@@ -69,27 +68,25 @@ class SingleStepTicks final : public LoggedTicks {
     }
   }
 
-  // Counts the steps, and keeps them if they are few. A change of a parameter gets the number of
-  // the first single step after it.
-  Result<void> read_all() {
-    if (auto begun = rewind_file(); !begun) return begun;
-    const std::vector<ParameterChange>& changes = log_.trace.parameters;
-    bool fits = true;
-    while (true) {
-      const auto step = read_next();
-      if (!step) return tl::unexpected(step.error());
-      if (!*step) break;
-      while (parameters_.size() < changes.size() && changes[parameters_.size()].tick < tick_) {
-        parameters_.push_back(changes[parameters_.size()]);
-        parameters_.back().tick = step_;
-      }
-      ++((*step)->setpoint.is_own ? counts_.with_own_setpoint : counts_.with_given_setpoint);
-      ++step_;
-      fits = step_ <= most_in_memory;
-      if (fits) in_memory_.push_back(**step);
+  // Finds the steps, unless the log was read with them.
+  Result<void> find_all() {
+    found_ = log_.found_steps;
+    if (!found_) {
+      const auto found = std::make_shared<SingleStepFinder>(log_.module, log_.trace.parameters);
+      const auto read = ticks_->rewind().and_then([&] {
+        return for_each_part(*ticks_, ticks_of_part, [&](const Trace& ticks, std::size_t, bool) {
+          for (std::size_t i = 0; i < ticks.samples.size(); ++i) {
+            found->next(ticks.samples[i], ticks_->setpoints()[i]);
+          }
+          return true;
+        });
+      });
+      if (!read) return tl::unexpected(read.error());
+      found_ = found;
     }
-    has_all_ = fits;
-    if (!fits) in_memory_ = {};
+    parameters_ = found_->parameters();
+    counts_.with_own_setpoint = found_->with_own_setpoint();
+    counts_.with_given_setpoint = found_->with_given_setpoint();
     count_left_out();
     return {};
   }
@@ -103,45 +100,45 @@ class SingleStepTicks final : public LoggedTicks {
     for (const LoggedOutput& output : log_.outputs) {
       if (output.topic != topic) continue;
       counts_.logged = output.samples + output.other_wings;
-      add(output.samples - std::min(output.samples, maker_->outputs()),
+      add(output.samples - std::min(output.samples, found_->maker().outputs()),
           fmt::format("of a step whose {} the log does not have",
                       is_rate_unit ? "gyro sample or torque" : "attitude"));
       add(output.other_wings, "in fixed-wing flight or a transition");
     }
-    for (const auto& [why, outputs] : maker_->unfit()) add(outputs, text_of(why));
+    for (const auto& [why, outputs] : found_->maker().unfit()) add(outputs, text_of(why));
   }
 
   Result<std::optional<SingleStep>> next() {
-    if (!has_all_) {
+    if (!found_->has_all()) {
       auto step = read_next();
       if (step && *step) ++step_;
       return step;
     }
-    return step_ < in_memory_.size() ? std::optional(in_memory_[step_++]) : std::nullopt;
+    const auto& all = found_->in_memory();
+    return step_ < all.size() ? std::optional(all[step_++]) : std::nullopt;
   }
 
   Result<void> rewind_file() {
-    maker_.emplace(log_);
+    maker_.emplace(log_.module, log_.trace.parameters);
     part_.samples.clear();
-    at_ = tick_ = 0;
+    at_ = 0;
     has_ended_ = false;
     return ticks_->rewind();
   }
 
   // The next single step of the file; empty after the last one.
   Result<std::optional<SingleStep>> read_next() {
-    constexpr std::size_t most = 1024;
     while (true) {
       while (at_ < part_.samples.size()) {
         const std::size_t at = at_++;
-        ++tick_;
         auto step = maker_->next(part_.samples[at], ticks_->setpoints()[at]);
         if (step) return step;
       }
       if (has_ended_) return std::nullopt;
       at_ = 0;
-      if (auto read = ticks_->next_part(most, part_); !read) return tl::unexpected(read.error());
-      has_ended_ = part_.samples.size() < most;
+      if (auto read = ticks_->next_part(ticks_of_part, part_); !read)
+        return tl::unexpected(read.error());
+      has_ended_ = part_.samples.size() < ticks_of_part;
     }
   }
 
@@ -149,15 +146,13 @@ class SingleStepTicks final : public LoggedTicks {
   std::shared_ptr<LoggedTicks> ticks_;
   ChannelSet present_;
   SingleSteps counts_;
-  std::vector<SingleStep> in_memory_;
-  bool has_all_ = false;  // in memory
+  std::shared_ptr<const SingleStepFinder> found_;
   std::size_t step_ = 0;  // the next one
 
   // The place in the file.
   std::optional<SingleStepMaker> maker_;
   Trace part_;
-  std::size_t at_ = 0;    // in part_, of the next tick
-  std::size_t tick_ = 0;  // the next one
+  std::size_t at_ = 0;  // in part_, of the next tick
   bool has_ended_ = false;
 };
 

@@ -34,16 +34,9 @@ class TimeCheck {
     return fits_at_once(std::get<Data>(message)) ? TimeFit::plausible
                                                  : check_closely(reader, message);
   }
-
- private:
-  struct Topic {
-    bool is_located = false;
-    int early = 0;  // samples that were too early
-    std::optional<Column> time = {};
-    std::optional<std::uint64_t> last_us = {};  // of its last plausible sample
-  };
-  // Whether the time is plausible without a look at others, as nearly all are: it is not far after
-  // those before it, and not the first of its topic.
+  // Does the same if the time is plausible without a look at those that follow, as nearly all are:
+  // it is not far after those before it, and not the first of its topic. Otherwise false, and
+  // nothing is changed.
   bool fits_at_once(const Data& data) {
     const std::size_t index = data.subscription->index;
     if (index >= topics_.size() || !topics_[index].last_us) return false;
@@ -54,6 +47,14 @@ class TimeCheck {
     newest_us_ = std::max(*newest_us_, time_us);
     return true;
   }
+
+ private:
+  struct Topic {
+    bool is_located = false;
+    int early = 0;  // samples that were too early
+    std::optional<Column> time = {};
+    std::optional<std::uint64_t> last_us = {};  // of its last plausible sample
+  };
   Result<TimeFit> check_closely(Reader& reader, Message& message);
   Topic& topic_of(const Reader& reader, const Subscription& subscription);
   // The times of samples that follow, sorted. `index`: of the subscription of the sample in

@@ -7,6 +7,7 @@
 
 #include "harness/ulog/logged_steps.hpp"
 #include "harness/ulog/own_topics.hpp"
+#include "harness/ulog/single_step_maker.hpp"
 
 namespace attest::ulog {
 namespace {
@@ -46,8 +47,13 @@ class SetpointKnown {
 class TicksOfLog final : public LoggedTicks {
  public:
   static Result<std::shared_ptr<TicksOfLog>> open(ModuleContents log, const Sample& first,
-                                                  LogRules rules, const std::string& file) {
+                                                  LogRules rules, bool finds_steps,
+                                                  const std::string& file) {
     std::shared_ptr<TicksOfLog> ticks(new TicksOfLog(std::move(log), first, rules, file));
+    if (finds_steps) {
+      ticks->found_ =
+          std::make_shared<SingleStepFinder>(ticks->from_.log.module(), ticks->parameters_);
+    }
     const auto opened = ticks->pair_outputs().and_then([&] { return ticks->rewind(); });
     if (!opened) return tl::unexpected(opened.error());
     return ticks;
@@ -68,6 +74,7 @@ class TicksOfLog final : public LoggedTicks {
     unit.begins_in_flight = begins_in_flight_;
     unit.has_every_step = begins_with_mode_ && !leaves_out_;
     unit.outputs = outputs_;
+    unit.found_steps = found_;
     for (const LoggedOutput& output : outputs_) {
       if (output.paired < output.samples) unit.has_every_step = false;
     }
@@ -141,6 +148,10 @@ class TicksOfLog final : public LoggedTicks {
       const auto step = steps->next();
       if (!step) return tl::unexpected(step.error());
       if (tick == 0) look_at_first((*step)->sample);
+      if (!found_) continue;
+      Sample completed = (*step)->sample;
+      complete(completed);
+      found_->next(completed, {setpoint_.next(completed), (*step)->setpoint_us});
     }
     for (const PairedOutput& output : steps->outputs()) outputs_.push_back(output.logged());
     return {};
@@ -170,6 +181,7 @@ class TicksOfLog final : public LoggedTicks {
   LoggedModule from_;
   ChannelSet present_;
   std::vector<LoggedOutput> outputs_;
+  std::shared_ptr<SingleStepFinder> found_;
   std::vector<std::size_t> updates_;  // the ticks of the log's changes of parameters
   const Channel& update_;
   bool leaves_out_ = false;  // samples
@@ -187,8 +199,8 @@ class TicksOfLog final : public LoggedTicks {
 }  // namespace
 
 Result<LoggedUnit> unit_of_log(ModuleContents log, const Sample& first, LogRules rules,
-                               const std::string& file) {
-  const auto ticks = TicksOfLog::open(std::move(log), first, rules, file);
+                               bool finds_steps, const std::string& file) {
+  const auto ticks = TicksOfLog::open(std::move(log), first, rules, finds_steps, file);
   if (!ticks) return tl::unexpected(ticks.error());
   LoggedUnit unit;
   (*ticks)->describe(unit);

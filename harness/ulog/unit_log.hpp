@@ -15,9 +15,10 @@ enum class LogRules : std::uint8_t {
 };
 
 // A unit with LoggedUnit::ticks. `first`: the sample before the first step, with bits in `updated`
-// for the assumed topics. Reads the file once more. REQUIRES: the log has steps; `log` is
-// of this file. Errors: the file cannot be read, or has changed.
+// for the assumed topics. `finds_steps`: with LoggedUnit::found_steps. Reads the file once more.
+// REQUIRES: the log has steps; `log` is of this file; `finds_steps` only of a cascade. Errors: the
+// file cannot be read, or has changed.
 Result<LoggedUnit> unit_of_log(ModuleContents log, const Sample& first, LogRules rules,
-                               const std::string& file);
+                               bool finds_steps, const std::string& file);
 
 }  // namespace attest::ulog

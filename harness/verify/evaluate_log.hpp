@@ -43,7 +43,7 @@ struct LogResult {
 // have. Parameters that the unit does not have in this profile are left out. A log shows few
 // situations, so a pass is no statement of conformance.
 //
-// Reads the ticks up to four times, at most `most_ticks` at once. Errors: those of
+// Reads the ticks once, and again if they judge nothing; `most_ticks` at once. Errors: those of
 // LoggedTicks::next_part().
 Result<LogResult> evaluate_log(const LoggedUnit& log, const std::string& profile, PortHost& host,
                                const LogLimits& limits,

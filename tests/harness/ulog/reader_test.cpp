@@ -45,6 +45,23 @@ TEST_F(ULogReader, ReadsEveryTypeOfMessage) {
   EXPECT_EQ(read.damage.total(), 0u);
 }
 
+TEST_F(ULogReader, PassesOverDataUpToTheFirstThatIsWanted) {
+  Crafted log;
+  log.format("a:uint64_t timestamp;").subscribe(0, "a");
+  for (std::uint64_t time = 1; time < 4; ++time) log.data(0, raw(time));
+  log.log('6', 10, "armed").data(0, raw(std::uint64_t{4}));
+  Reader reader = open(log);
+  Message message;
+  for (const char* definition : {"F", "A"}) ASSERT_TRUE(*reader.next(message)) << definition;
+  const auto time_of = [](const Data& data) { return load<std::uint64_t>(data.bytes.data()); };
+  reader.skip_data([&](const Data& data) { return time_of(data) < 2; });
+  ASSERT_TRUE(*reader.next(message));
+  EXPECT_EQ(time_of(std::get<Data>(message)), 2u);
+  reader.skip_data([](const Data&) { return true; });
+  ASSERT_TRUE(*reader.next(message));
+  EXPECT_TRUE(std::holds_alternative<LogLine>(message)) << "only data are passed over";
+}
+
 TEST_F(ULogReader, ReadsEveryTypeOfValue) {
   Crafted log;
   log.format(

@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 
 #include "harness/ulog/flight_log.hpp"
+#include "harness/ulog/single_steps.hpp"
 #include "harness/ulog/writer.hpp"
 #include "tests/harness/core/temporary_directory.hpp"
 #include "tests/harness/ulog/crafted.hpp"
@@ -90,6 +91,30 @@ std::vector<float> rolls_of(const LoggedUnit& unit) {
     if (published.published != 0) found.push_back(published.roll);
   }
   return found;
+}
+
+TEST_F(LogOfPx4, FindsTheSingleStepsWhenItIsRead) {
+  add_mode(500, false, true);
+  for (std::uint64_t time = 1'000'000; time < 3'000'000; time += 100'000) {
+    add_setpoint(time - 900, 0.5f);
+    add_attitude(time, 0.25f, time < 2'000'000 ? 0 : 1);
+    if (time % 300'000 != 0) add_rates(time + 100, static_cast<float>(time));
+  }
+  LoggedUnit unit = read().units[0];
+  ASSERT_TRUE(unit.found_steps) << "the log is too sparse to be judged tick by tick";
+  const LoggedUnit found = single_steps_of(unit).value();
+  unit.found_steps = nullptr;
+  const LoggedUnit searched = single_steps_of(unit).value();
+  Trace of_found, of_searched;
+  ASSERT_TRUE(found.ticks->next_part(100, of_found));
+  ASSERT_TRUE(searched.ticks->next_part(100, of_searched));
+  EXPECT_EQ(of_found.samples.size(), 13u);
+  ASSERT_EQ(of_found.samples.size(), of_searched.samples.size());
+  EXPECT_EQ(std::memcmp(of_found.samples.data(), of_searched.samples.data(),
+                        of_found.samples.size() * sizeof(Sample)),
+            0);
+  EXPECT_EQ(found.ticks->setpoints(), searched.ticks->setpoints());
+  EXPECT_EQ(found.single_steps->left_out.size(), searched.single_steps->left_out.size());
 }
 
 TEST_F(LogOfPx4, HasTheSameTicksInParts) {
