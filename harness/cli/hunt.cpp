@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -11,8 +10,8 @@
 #include <fmt/ranges.h>
 #include <sys/resource.h>
 
+#include "harness/cli/hunt_files.hpp"
 #include "harness/cli/outputs.hpp"
-#include "harness/cli/own_suite.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/interrupt.hpp"
@@ -23,12 +22,10 @@
 #include "harness/report/progress.hpp"
 #include "harness/report/report.hpp"
 #include "harness/report/text.hpp"
-#include "harness/trace/csv.hpp"
 
 namespace attest::cli {
 namespace {
 
-namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 struct HuntCommandOptions {
@@ -123,49 +120,6 @@ class HuntProgressLine {
   Clock::time_point begin_, latest_;
 };
 
-// A name for which `folder` has no other case: "cascade_d_reversed_2".
-std::string free_name(const fs::path& folder, const HuntFinding& finding) {
-  for (int number = 1;; ++number) {
-    std::string name = number == 1 ? finding.name : fmt::format("{}_{}", finding.name, number);
-    std::error_code failed;
-    if (!fs::exists(fs::symlink_status(folder / (name + ".toml"), failed))) return name;
-  }
-}
-
-std::string replay_command(const fs::path& trace, const HuntFinding& finding,
-                           const HuntReport& report, const std::string& mixer) {
-  std::string command =
-      fmt::format("attest replay {} --port {} --profile {}", shell_word(trace.string()),
-                  shell_word(report.run.port), finding.failure.profile);
-  if (report.run.level == Level::exact) command += " --level exact";
-  if (!mixer.empty()) command += " --mixer " + shell_word(mixer);
-  return command;
-}
-
-// Writes each finding as a case of the suite `out`, and its inputs with the right outputs as a
-// trace.
-Result<void> write_findings(const std::string& out, HuntReport& report) {
-  for (HuntFinding& finding : report.found.findings) {
-    HuntReport::Written& written = report.written.emplace_back();
-    if (out.empty() || finding.needs_others) continue;
-    const fs::path root = out;
-    const fs::path folder = root / "cases" / finding.failure.profile / hunt_group;
-    const fs::path traces = root / "traces" / finding.failure.profile / hunt_group;
-    if (auto made = make_own_suite(root, folder); !made) return made;
-    std::error_code failed;
-    fs::create_directories(traces, failed);
-    if (failed) return fail_at(traces.string(), "cannot be made: " + failed.message());
-    finding.name = free_name(folder, finding);
-    const fs::path file = folder / (finding.name + ".toml"),
-                   trace = traces / (finding.name + ".csv");
-    if (auto done = write_new_case(file, finding.toml); !done) return done;
-    if (auto done = write_csv(trace, finding.trace, all_columns(finding.trace)); !done) return done;
-    written = {file.string(), trace.string(),
-               replay_command(trace, finding, report, finding.mixer)};
-  }
-  return {};
-}
-
 struct HuntPlan {
   HuntOptions hunt;
   HostOptions host;
@@ -199,8 +153,8 @@ Result<HuntPlan> make_hunt_plan(const HuntCommandOptions& options) {
   const double steps = options.steps.value_or(options.seconds ? 1e15 : usual_steps);
   plan.hunt.least_steps = static_cast<std::size_t>(steps);
   plan.hunt.fail_fast = options.fail_fast;
-  plan.hunt.processes = options.jobs;
-  plan.hunt.stop = interrupted;
+  plan.hunt.workers.processes = options.jobs;
+  plan.hunt.workers.stop = interrupted;
   RunResult& run = plan.report.run;
   run.attest_version = version;
   run.command = "hunt";

@@ -1,20 +1,14 @@
 #include "harness/diagnosis/hunt.hpp"
 
 #include <algorithm>
-#include <map>
 #include <memory>
-#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "harness/casefile/parse.hpp"
-#include "harness/casefile/stimulus.hpp"
-#include "harness/diagnosis/diagnose_run.hpp"
 #include "harness/diagnosis/hunt_job.hpp"
 #include "harness/diagnosis/hunt_shrink.hpp"
 #include "harness/diagnosis/hunt_silence.hpp"
-#include "harness/golden/reference.hpp"
 #include "harness/port/features.hpp"
 #include "harness/port/port.hpp"
 
@@ -33,15 +27,6 @@ constexpr std::size_t most_same = 3;
 constexpr std::size_t most_passing_trials = 8;
 // Without an answer in time, after which the hunt ends.
 constexpr std::size_t most_timeouts = 5;
-
-struct Failure {
-  std::size_t index;  // of the target
-  HuntTarget target;
-  HuntInputs inputs;
-  VectorResult result;
-  std::size_t same = 0;           // later trials that failed in the same way
-  std::string silent_topic = {};  // that the port never publishes, if this is the failure
-};
 
 // What the port declares that it lacks; a group of cases that it does not support, too, if it is
 // named after a feature.
@@ -64,6 +49,7 @@ class Hunt {
     for (const ModuleUnderTest& subject : options.subjects) {
       targets_.push_back({{subject, options.level, port.fixed_step, lacks_of(port)}, {}, {}, 0});
     }
+    passing_.resize(targets_.size());
   }
 
   Result<HuntRun> run() {
@@ -76,25 +62,21 @@ class Hunt {
     } while (run_.progress.steps < options_.least_steps && !options_.is_over() &&
              run_.ended_early.empty());
     options_.on_end();
-    if (auto found = find(); !found) return tl::unexpected(found.error());
+    note_silences();
+    auto found = findings_of(failures_, passing_, options_.workers, host_);
+    if (!found) return tl::unexpected(found.error());
+    run_.findings = *std::move(found);
     return std::move(run_);
   }
 
  private:
-  template <typename R>
-  Result<std::vector<R>> results_of(const Jobs<R>& jobs) const;
   bool has_finding() const { return !failures_.empty() || !silences_.found().empty(); }
   Result<void> round();
   Result<std::vector<HuntTrials>> trials_of_round() const;
   Result<void> check_steps(const std::vector<HuntTrials>& trials) const;
   void take(const HuntTrial& trial, const std::vector<std::size_t>& kept_before);
   void note_failure(std::size_t target, HuntInputs inputs, const VectorResult& result);
-  Result<void> find();
-  Result<HuntFinding> finding_of(const Failure& failure, const ShrunkCase& shrunk);
-  Result<void> diagnose(const Failure& failure, const ShrunkCase& shrunk, HuntFinding& finding);
-  std::optional<Diagnosis> diagnosis_of(const HuntTarget& target,
-                                        const std::vector<std::pair<std::string, VectorResult>>&);
-  void add(HuntFinding finding);
+  void note_silences();
 
   const HuntOptions& options_;
   const HostOptions& host_;
@@ -103,22 +85,10 @@ class Hunt {
   std::uint64_t next_ = 0;    // trial
   std::size_t timeouts_ = 0;  // trials that ended by one
   HuntSilences silences_;
-  std::vector<Failure> failures_;
-  std::map<std::size_t, std::vector<HuntInputs>> passing_;  // by target
+  std::vector<HuntFailure> failures_;
+  std::vector<std::vector<HuntInputs>> passing_;  // of each target
   HuntRun run_;
 };
-
-template <typename R>
-Result<std::vector<R>> Hunt::results_of(const Jobs<R>& jobs) const {
-  JobOptions<R> workers;
-  workers.processes = options_.processes;
-  workers.in_process = host_.in_process;
-  workers.stop = options_.stop;
-  JobResults<R> outcome = run_jobs(jobs, workers);
-  if (options_.stop()) return fail("interrupted");
-  if (!outcome.errors.empty()) return tl::unexpected(outcome.errors.front());
-  return std::move(outcome.results);
-}
 
 Result<std::vector<HuntTrials>> Hunt::trials_of_round() const {
   Jobs<HuntTrials> jobs;
@@ -126,13 +96,13 @@ Result<std::vector<HuntTrials>> Hunt::trials_of_round() const {
     jobs.push_back(
         std::make_unique<TrialJob>(targets_, options_.seed, next_ + part * count_, count_, host_));
   }
-  return results_of(jobs);
+  return results_of(jobs, options_.workers, host_);
 }
 
 Result<void> Hunt::round() {
   auto results = trials_of_round();
   while (results && silences_.take(*results, targets_)) results = trials_of_round();
-  if (options_.stop()) {
+  if (options_.workers.stop()) {
     run_.ended_early = "interrupted";
     return {};
   }
@@ -201,7 +171,7 @@ void Hunt::take(const HuntTrial& trial, const std::vector<std::size_t>& kept_bef
 
 void Hunt::note_failure(std::size_t target, HuntInputs inputs, const VectorResult& result) {
   std::size_t same = 0;
-  for (Failure& failure : failures_) {
+  for (HuntFailure& failure : failures_) {
     const Module module = failure.target.subject.module;
     const bool is_same_module = module == targets_[target].target.subject.module;
     if (!is_same_module || !fail_the_same_way(failure.result, result)) continue;
@@ -211,125 +181,13 @@ void Hunt::note_failure(std::size_t target, HuntInputs inputs, const VectorResul
   failures_.push_back({target, targets_[target].target, std::move(inputs), result});
 }
 
-Result<void> Hunt::find() {
+void Hunt::note_silences() {
   for (const HuntSilence& silence : silences_.found()) {
     const HuntedTarget& hunted = targets_[silence.target];
     failures_.insert(failures_.begin(),
                      {silence.target, only_topic(silence, hunted), silence.inputs, silence.failure,
                       0, std::string(topic_of(silence, hunted))});
   }
-  Jobs<ShrunkCase> jobs;
-  for (const Failure& failure : failures_) {
-    jobs.push_back(std::make_unique<ShrinkJob>(failure.target, failure.inputs, host_));
-  }
-  const auto shrunk = results_of(jobs);
-  if (!shrunk) return tl::unexpected(shrunk.error());
-  for (std::size_t i = 0; i < shrunk->size(); ++i) {
-    auto finding = finding_of(failures_[i], (*shrunk)[i]);
-    if (!finding) return tl::unexpected(finding.error());
-    add(*std::move(finding));
-  }
-  return {};
-}
-
-// "rate_law_vehicle_torque_setpoint_xyz_0", of the first deviation.
-std::string name_without_fault(const VectorResult& failure) {
-  if (!failure.first) return fmt::format("{}_{}", failure.name, name_of(failure.verdict));
-  const Channel& channel = channels()[failure.first->channel];
-  return fmt::format("{}_{}_{}", name_of(stage_of(*failure.first)), channel.topic(),
-                     channel.field());
-}
-
-std::string identifier(std::string text) {
-  for (char& c : text) {
-    const bool is_kept = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
-    if (!is_kept) c = '_';
-  }
-  while (text.ends_with('_')) text.pop_back();
-  return text;
-}
-
-Result<HuntFinding> Hunt::finding_of(const Failure& failure, const ShrunkCase& shrunk) {
-  HuntFinding finding;
-  finding.trials = 1 + failure.same;
-  finding.failure = shrunk.needs_others ? failure.result : shrunk.of_shrunk;
-  finding.needs_others = shrunk.needs_others;
-  finding.name = identifier(name_without_fault(finding.failure));
-  if (shrunk.needs_others) return finding;
-  finding.toml = shrunk.shrunk;
-  if (failure.silent_topic.empty()) {
-    if (auto done = diagnose(failure, shrunk, finding); !done) return tl::unexpected(done.error());
-  } else {
-    finding.name = "never_publishes_" + failure.silent_topic;
-    finding.failure.reason = fmt::format(
-        "the port never publishes {}; its other outputs are judged", failure.silent_topic);
-  }
-  const auto parsed = parse_case_text(
-      finding.toml,
-      fmt::format("cases/{}/{}/{}.toml", finding.failure.profile, hunt_group, finding.name));
-  if (!parsed) return tl::unexpected(parsed.error());
-  auto trace =
-      reference_outputs(subject_of(*parsed), stimulate(*parsed, finding.failure.rate.motor_unit));
-  if (!trace) return tl::unexpected(trace.error());
-  finding.mixer = parsed->mixer;
-  finding.trace = *std::move(trace);
-  return finding;
-}
-
-Result<void> Hunt::diagnose(const Failure& failure, const ShrunkCase& shrunk,
-                            HuntFinding& finding) {
-  std::vector<std::pair<std::string, VectorResult>> vectors = {{shrunk.shrunk, shrunk.of_shrunk},
-                                                               {shrunk.whole, shrunk.of_whole}};
-  for (const HuntInputs& inputs : passing_[failure.index]) {
-    auto text = case_of(inputs, options_.level);
-    if (!text) return tl::unexpected(text.error());
-    VectorResult passed;
-    passed.profile = inputs.subject.profile;
-    passed.rate = inputs.rate;
-    vectors.emplace_back(*std::move(text), passed);
-  }
-  finding.diagnosis = diagnosis_of(failure.target, vectors);
-  if (finding.diagnosis && !finding.diagnosis->suspects.empty()) {
-    finding.name = identifier(std::string(finding.diagnosis->suspects.front().fault->id));
-  }
-  return {};
-}
-
-// `vectors`: texts of cases with their results.
-std::optional<Diagnosis> Hunt::diagnosis_of(
-    const HuntTarget& target, const std::vector<std::pair<std::string, VectorResult>>& vectors) {
-  RunResult run;
-  run.level = options_.level;
-  run.lacks = host_.said->lacks;
-  std::vector<SelectedCase> cases;
-  for (const auto& [text, result] : vectors) {
-    const std::string name = fmt::format("trial_{}", cases.size());
-    const auto parsed =
-        parse_case_text(text, fmt::format("cases/{}/{}/{}.toml", result.profile, hunt_group, name));
-    if (!parsed) continue;
-    cases.push_back({*parsed, {RunConfiguration{result.rate, std::nullopt}}});
-    run.results.push_back(result);
-    run.results.back().group = hunt_group;
-    run.results.back().name = name;
-  }
-  DiagnosisOptions options;
-  options.processes = options_.processes;
-  options.stop = options_.stop;
-  HostOptions host = host_;
-  host.said->lacks.outputs = target.lacks.outputs;
-  return diagnose_run(run, cases, host, options);
-}
-
-// Findings of one cause are one finding, with the shortest case.
-void Hunt::add(HuntFinding finding) {
-  const auto same = std::ranges::find(run_.findings, finding.name, &HuntFinding::name);
-  if (same == run_.findings.end()) return run_.findings.push_back(std::move(finding));
-  const auto size = [](const HuntFinding& one) {
-    return std::tuple(one.needs_others, one.trace.samples.size(), one.toml.size());
-  };
-  finding.trials = std::max(finding.trials, same->trials);
-  if (size(finding) < size(*same)) std::swap(finding, *same);
-  same->trials = std::max(finding.trials, same->trials);
 }
 
 }  // namespace

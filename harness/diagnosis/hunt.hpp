@@ -8,14 +8,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "harness/diagnosis/diagnose.hpp"
-#include "harness/diagnosis/hunt_generator.hpp"
-#include "harness/diagnosis/hunt_trial.hpp"
-#include "harness/host/port_process.hpp"
+#include "harness/diagnosis/hunt_findings.hpp"
 
 namespace attest {
 
@@ -33,24 +29,11 @@ struct HuntOptions {
   std::size_t least_steps = 1'000'000;  // the hunt ends after the round that reaches them
   std::function<bool()> is_over = [] { return false; };  // asked after a round, too
   bool fail_fast = false;  // the hunt ends after the round of the first failing trial, too
-  int processes = 1;
-  // True: end soon. The round is not counted; findings of the rounds before it are made.
-  std::function<bool()> stop = [] { return false; };
+  // At stop() the round is not counted; findings of the rounds before it are made.
+  HuntWorkers workers;
   // Called after the last round. If stop() is still true, no findings are made.
   std::function<void()> on_end = [] {};
   std::function<void(const HuntProgress&)> on_round = [](const HuntProgress&) {};
-};
-
-// A mistake of the port, and a small case that shows it.
-struct HuntFinding {
-  std::string name;  // of its case: the fault that it resembles, or the stage and the output
-  VectorResult failure;
-  std::optional<Diagnosis> diagnosis;
-  std::string toml;           // the case file
-  std::string mixer;          // its definition; empty: another module
-  Trace trace;                // its inputs, with the outputs of the reference
-  std::size_t trials = 0;     // that failed first in the same output
-  bool needs_others = false;  // fails only after other trials in the same process: has no case
 };
 
 struct HuntRun {

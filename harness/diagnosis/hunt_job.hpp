@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -24,6 +25,26 @@ struct HuntedTarget {
 };
 
 using HuntTrials = std::vector<HuntTrial>;
+
+struct HuntWorkers {
+  int processes = 1;
+  // True: end soon.
+  std::function<bool()> stop = [] { return false; };
+};
+
+// Errors: those of the jobs; stop().
+template <typename R>
+Result<std::vector<R>> results_of(const Jobs<R>& jobs, const HuntWorkers& workers,
+                                  const HostOptions& host) {
+  JobOptions<R> options;
+  options.processes = workers.processes;
+  options.in_process = host.in_process;
+  options.stop = workers.stop;
+  JobResults<R> outcome = run_jobs(jobs, options);
+  if (workers.stop()) return fail("interrupted");
+  if (!outcome.errors.empty()) return tl::unexpected(outcome.errors.front());
+  return std::move(outcome.results);
+}
 
 template <>
 struct Codec<HuntTrials> {

@@ -122,7 +122,7 @@ TEST(Hunt, AnInterruptKeepsWhatWasFound) {
   options.least_steps = 1'000'000'000;
   bool is_interrupted = false;
   options.on_round = [&](const HuntProgress&) { is_interrupted = true; };
-  options.stop = [&] { return is_interrupted; };
+  options.workers.stop = [&] { return is_interrupted; };
   options.on_end = [&] { is_interrupted = false; };
   const HuntRun run = found_by(options, fault_host("cascade-d-reversed"));
   EXPECT_EQ(run.ended_early, "interrupted");
