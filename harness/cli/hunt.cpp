@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -36,7 +37,8 @@ struct HuntCommandOptions {
   std::optional<double> steps, seconds;
   int jobs = 1;
   bool fail_fast = false;
-  std::string out, json, junit, html;
+  HuntFiles files;
+  std::string json, junit, html;
 };
 
 constexpr double usual_steps = 1e6;
@@ -124,7 +126,25 @@ struct HuntPlan {
   HuntOptions hunt;
   HostOptions host;
   HuntReport report;
+  std::optional<HuntCorpus> corpus;
 };
+
+// The hunt begins with the corpus, and then with the logs.
+Result<void> add_first(const HuntCommandOptions& options, HuntPlan& plan) {
+  if (!options.files.corpus.empty()) {
+    auto corpus = open_corpus(options.files.corpus, plan.hunt);
+    if (!corpus) return tl::unexpected(corpus.error());
+    plan.corpus = *std::move(corpus);
+    plan.hunt.first = plan.corpus->inputs();
+  }
+  // Several profiles: each log says its own.
+  const auto& profiles = options.profiles;
+  auto of_logs = inputs_of_logs(options.files, profiles.size() == 1 ? profiles.front() : "",
+                                plan.hunt, plan.report.notes);
+  if (!of_logs) return tl::unexpected(of_logs.error());
+  std::ranges::move(*of_logs, std::back_inserter(plan.hunt.first));
+  return {};
+}
 
 Result<HuntPlan> make_hunt_plan(const HuntCommandOptions& options) {
   HuntPlan plan;
@@ -163,16 +183,18 @@ Result<HuntPlan> make_hunt_plan(const HuntCommandOptions& options) {
   run.port_version = port->version;
   run.level = *level;
   plan.report.seed = options.seed;
+  if (auto added = add_first(options, plan); !added) return tl::unexpected(added.error());
   return plan;
 }
 
 int hunt_command(const HuntCommandOptions& options, const Globals& globals) {
   note_interrupts();
   const auto checked = check_outputs({options.json, options.junit, options.html},
-                                     {options.host.port, {}}, globals.suite);
+                                     {options.host.port, options.files.logs}, globals.suite);
   if (!checked) return report_error(checked.error());
-  if (!options.out.empty()) {
-    if (auto own = check_own_suite(options.out); !own) return report_error(own.error());
+  for (const std::string& folder : {options.files.out, options.files.corpus}) {
+    if (folder.empty()) continue;
+    if (auto own = check_own_suite(folder); !own) return report_error(own.error());
   }
   auto json = AtomicFile::open(options.json);
   if (!json) return report_error(json.error());
@@ -189,6 +211,11 @@ int hunt_command(const HuntCommandOptions& options, const Globals& globals) {
     return options.seconds && passed.count() >= *options.seconds;
   };
   plan->hunt.on_round = [&](const HuntProgress& now) { line.show(now); };
+  if (plan->corpus) {
+    plan->hunt.on_new = [&](const std::string& profile, const std::string& toml) {
+      return plan->corpus->add(profile, toml);
+    };
+  }
   bool was_interrupted = false;
   plan->hunt.on_end = [&] {
     line.erase();
@@ -202,8 +229,13 @@ int hunt_command(const HuntCommandOptions& options, const Globals& globals) {
   if (auto same = check_port(plan->host); !same) return report_error(same.error());
   HuntReport& report = plan->report;
   report.found = *std::move(found);
-  if (auto written = write_findings(options.out, report); !written) {
+  if (auto written = write_findings(options.files.out, report); !written) {
     return report_error(written.error());
+  }
+  if (plan->corpus) {
+    if (auto added = add_findings(report.found, *plan->corpus); !added)
+      return report_error(added.error());
+    report.notes.push_back(corpus_note(options.files.corpus, *plan->corpus));
   }
   const Document document = hunt_document(report);
   for (const auto& written :
@@ -241,9 +273,30 @@ void add_budget(Command command, HuntCommandOptions& options) {
       .positive();
 }
 
+void add_first_inputs(Command command, HuntFiles& files) {
+  command
+      .option("--corpus", files.corpus,
+              fmt::format(
+                  "Begin with the cases of this suite of yours, and add to it: findings, and "
+                  "inputs with which the reference comes nearer to a decision of the law or does "
+                  "something else that is new; at most {} cases of a module in a profile",
+                  most_of_corpus))
+      .type("DIR")
+      .group(option_group::selection);
+  const Option log = command
+                         .option("--log", files.logs,
+                                 "Begin with parts of this flight log, too, and vary them; can "
+                                 "be given several times")
+                         .type("FLIGHT.ulg")
+                         .one_each_time()
+                         .group(option_group::logs);
+  add_assumed(command, files.assumed);
+  command.find("--assume").needs(log);
+}
+
 void add_hunt_reports(Command command, HuntCommandOptions& options) {
   command
-      .option("--out", options.out,
+      .option("--out", options.files.out,
               "Write each finding as a case of this suite of yours (group `hunt`), and its inputs "
               "and right outputs as a trace")
       .type("DIR")
@@ -283,6 +336,7 @@ void add_hunt(const CommandLine& line) {
       .type("LEVEL")
       .shows_default()
       .group(option_group::strictness);
+  add_first_inputs(command, options->files);
   add_budget(command, *options);
   add_jobs(command, options->jobs, "Number of worker processes; does not change the findings");
   command.flag("--fail-fast", options->fail_fast, "End after the round that has the first finding")
@@ -294,7 +348,11 @@ void add_hunt(const CommandLine& line) {
        {"attest hunt --port lib:./libmine.so --module rate_unit --seconds 60 --out ours",
         "search for a minute, and write what is found as cases of the suite `ours`"},
        {"attest hunt --port lib:./libmine.so --level exact --seed 2",
-        "look for any other bit, with other trials"}});
+        "look for any other bit, with other trials"},
+       {"attest hunt --port lib:./libmine.so --corpus corpus",
+        "begin where the last hunt of this folder ended; run it each night"},
+       {"attest hunt --port lib:./libmine.so --log flight.ulg",
+        "vary what the units received in a flight"}});
   command.runs(options, hunt_command);
 }
 

@@ -1,11 +1,16 @@
 #include "harness/cli/hunt_files.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <system_error>
 
 #include <fmt/format.h>
 
+#include "harness/cli/log_cases.hpp"
 #include "harness/cli/own_suite.hpp"
+#include "harness/cli/suite_folder.hpp"
+#include "harness/diagnosis/hunt_start.hpp"
 #include "harness/report/text.hpp"
 #include "harness/trace/csv.hpp"
 
@@ -33,7 +38,69 @@ std::string replay_command(const fs::path& trace, const HuntFinding& finding,
   return command;
 }
 
+bool is_subject(const ModuleUnderTest& unit, const HuntOptions& hunt) {
+  return std::ranges::any_of(hunt.subjects, [&](const ModuleUnderTest& subject) {
+    return subject.profile == unit.profile && subject.module == unit.module;
+  });
+}
+
 }  // namespace
+
+Result<HuntCorpus> open_corpus(const std::string& root, const HuntOptions& hunt) {
+  const fs::path folder = root, cases = folder / "cases";
+  std::error_code failed;
+  const bool exists = fs::exists(folder, failed);
+  if (exists && !fs::is_directory(folder, failed)) {
+    return fail_at(root, "is not a folder; --corpus names a folder, which need not exist");
+  }
+  const bool is_suite = fs::exists(cases, failed) || fs::exists(folder / base_file, failed);
+  if (exists && !is_suite && !fs::is_empty(folder, failed)) {
+    return fail_at(root, "has files but no cases/, so it is no corpus; name another folder");
+  }
+  if (auto made = make_own_suite(folder, cases); !made) return tl::unexpected(made.error());
+  return HuntCorpus::open(cases, hunt.subjects, hunt.level);
+}
+
+Result<std::vector<HuntInputs>> inputs_of_logs(const HuntFiles& files, const std::string& profile,
+                                               const HuntOptions& hunt,
+                                               std::vector<std::string>& notes) {
+  std::vector<HuntInputs> inputs;
+  for (const std::string& file : files.logs) {
+    auto log = read_log(file, files.assumed, profile);
+    if (!log) return tl::unexpected(log.error());
+    const auto windows =
+        windows_of(*log, file, [&](const ModuleUnderTest& unit) { return is_subject(unit, hunt); });
+    if (!windows) return tl::unexpected(windows.error());
+    print_notes(file, log->notes);
+    for (const LogWindow& window : *windows) {
+      std::ranges::move(trials_of_case(window.the_case, window.rate), std::back_inserter(inputs));
+    }
+    notes.push_back(
+        fmt::format("log {}: began with {}", file, counted(windows->size(), "part") + " of it"));
+  }
+  return inputs;
+}
+
+Result<void> add_findings(const HuntRun& found, HuntCorpus& corpus) {
+  for (const HuntFinding& finding : found.findings) {
+    if (finding.needs_others) continue;
+    if (auto added = corpus.add(finding.failure.profile, finding.toml); !added) return added;
+  }
+  return {};
+}
+
+std::string corpus_note(const std::string& root, const HuntCorpus& corpus) {
+  std::string text = fmt::format("corpus {}: began with {}", root, counted(corpus.used(), "case"));
+  for (const auto& [why, count] : corpus.skipped()) {
+    text += fmt::format(", skipped {} ({})", count, why);
+  }
+  text += fmt::format("; added {}", corpus.added());
+  if (corpus.left_out() > 0) {
+    text += fmt::format(", left out {} (a module in a profile has at most {})", corpus.left_out(),
+                        most_of_corpus);
+  }
+  return text;
+}
 
 Result<void> write_findings(const std::string& out, HuntReport& report) {
   for (HuntFinding& finding : report.found.findings) {

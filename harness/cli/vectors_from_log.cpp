@@ -7,15 +7,13 @@
 
 #include <fmt/format.h>
 
-#include "harness/casefile/log_case.hpp"
+#include "harness/cli/log_cases.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/own_suite.hpp"
-#include "harness/cli/read_log.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/cli/vectors.hpp"
 #include "harness/core/suggestion.hpp"
 #include "harness/port/profiles.hpp"
-#include "harness/ulog/single_steps.hpp"
 
 namespace attest::cli {
 namespace {
@@ -44,34 +42,13 @@ struct WrittenCase {
   LogCase made;
 };
 
-// The steps of a log as a trace. Of a unit of v1.14 to v1.18 that lacks too many steps: the single
-// steps, or no step. A log of the controller may lack steps, because the golden of its case comes
-// from a reference that starts at the same tick.
-Result<Trace> steps_of(const LoggedUnit& unit, std::vector<std::string>& notes) {
-  if (unit.module == Module::mc_att_control || unit.not_judged.empty()) return unit.trace;
-  Trace steps;
-  if (unit.trace.samples.empty()) return steps;
-  const auto single = single_steps_of(unit);
-  if (!single) return tl::unexpected(single.error());
-  auto read = single->ticks->next_part(whole_trace, steps);
-  if (!read) return tl::unexpected(read.error());
-  const SingleSteps& found = *single->single_steps;
-  notes.push_back(fmt::format("the {} has {} single steps, of {} that the log has outputs of",
-                              info_of(unit.module).title, steps.samples.size(), found.logged));
-  return steps;
-}
-
 // A case of each unit whose inputs the log has.
 Result<std::vector<LogCase>> cases_of(const VectorOptions& options, FlightLog& log) {
   std::vector<LogCase> cases;
   for (const LoggedUnit& unit : log.units) {
-    const auto steps = steps_of(unit, log.notes);
+    const auto steps = steps_of(unit, log);
     if (!steps) return tl::unexpected(steps.error());
-    if (steps->samples.size() < 2) {
-      log.notes.push_back(
-          fmt::format("no case of the {}: {}", info_of(unit.module).title, unit.not_judged));
-      continue;
-    }
+    if (steps->samples.size() < 2) continue;
     auto made = case_of_log(*steps, log.profile,
                             {options.from_s, options.to_s.value_or(LogPart().to_s)}, log.notes);
     if (!made) return tl::unexpected(made.error());

@@ -1,6 +1,7 @@
 #include "harness/diagnosis/hunt.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -38,6 +39,12 @@ Lacks lacks_of(const Declarations& port) {
   return lacks;
 }
 
+HuntInputs to_vary(HuntInputs inputs) {
+  constexpr std::uint32_t most_quiet = 1000;  // its variations would take too long
+  for (HuntTick& tick : inputs.ticks) tick.quiet = std::min(tick.quiet, most_quiet);
+  return inputs;
+}
+
 class Hunt {
  public:
   Hunt(const HuntOptions& options, const HostOptions& host)
@@ -47,7 +54,9 @@ class Hunt {
         silences_(options.seed) {
     const Declarations& port = *host.said;
     for (const ModuleUnderTest& subject : options.subjects) {
-      targets_.push_back({{subject, options.level, port.fixed_step, lacks_of(port)}, {}, {}, 0});
+      targets_.push_back(
+          {{subject, options.level, port.fixed_step, lacks_of(port)}, {}, {}, {}, 0});
+      begin_with_cases(targets_.back());
     }
     passing_.resize(targets_.size());
   }
@@ -59,8 +68,8 @@ class Hunt {
       if (options_.fail_fast && run_.ended_early.empty() && has_finding()) {
         run_.ended_early = "at the first finding";
       }
-    } while (run_.progress.steps < options_.least_steps && !options_.is_over() &&
-             run_.ended_early.empty());
+    } while ((run_.progress.steps < options_.least_steps || !has_tried_cases()) &&
+             !options_.is_over() && run_.ended_early.empty());
     options_.on_end();
     note_silences();
     auto found = findings_of(failures_, passing_, options_.workers, host_);
@@ -71,10 +80,14 @@ class Hunt {
 
  private:
   bool has_finding() const { return !failures_.empty() || !silences_.found().empty(); }
+  void begin_with_cases(HuntedTarget& hunted) const;
+  bool has_tried_cases() const;
   Result<void> round();
   Result<std::vector<HuntTrials>> trials_of_round() const;
   Result<void> check_steps(const std::vector<HuntTrials>& trials) const;
-  void take(const HuntTrial& trial, const std::vector<std::size_t>& kept_before);
+  Result<void> take(const HuntTrial& trial, std::vector<std::vector<HuntInputs>>& kept);
+  Result<void> tell_news(const HuntedTarget& hunted, const HuntInputs& inputs,
+                         const HuntFeatures& news);
   void note_failure(std::size_t target, HuntInputs inputs, const VectorResult& result);
   void note_silences();
 
@@ -89,6 +102,23 @@ class Hunt {
   std::vector<std::vector<HuntInputs>> passing_;  // of each target
   HuntRun run_;
 };
+
+void Hunt::begin_with_cases(HuntedTarget& hunted) const {
+  for (const HuntInputs& inputs : options_.first) {
+    const ModuleUnderTest& subject = hunted.target.subject;
+    const bool is_own =
+        inputs.subject.profile == subject.profile && inputs.subject.module == subject.module;
+    if (!is_own || inputs.ticks.empty()) continue;
+    hunted.first.push_back(fit_trial(hunted.target, inputs));
+    hunted.kept.push_back(to_vary(hunted.first.back()));
+  }
+}
+
+bool Hunt::has_tried_cases() const {
+  return std::ranges::all_of(targets_, [&](const HuntedTarget& hunted) {
+    return hunted.first.size() * targets_.size() <= next_;
+  });
+}
 
 Result<std::vector<HuntTrials>> Hunt::trials_of_round() const {
   Jobs<HuntTrials> jobs;
@@ -109,10 +139,14 @@ Result<void> Hunt::round() {
   if (!results) return tl::unexpected(results.error());
   if (auto stepped = check_steps(*results); !stepped) return stepped;
   next_ += parts_of_round * count_;
-  std::vector<std::size_t> kept_before;
-  for (const HuntedTarget& target : targets_) kept_before.push_back(target.kept.size());
+  std::vector<std::vector<HuntInputs>> kept(targets_.size());
   for (const HuntTrials& trials : *results) {
-    for (const HuntTrial& trial : trials) take(trial, kept_before);
+    for (const HuntTrial& trial : trials) {
+      if (auto taken = take(trial, kept); !taken) return taken;
+    }
+  }
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    std::ranges::move(kept[i], std::back_inserter(targets_[i].kept));
   }
   if (timeouts_ >= most_timeouts) {
     run_.ended_early = fmt::format("the port did not answer in time in {} trials", timeouts_);
@@ -138,35 +172,46 @@ Result<void> Hunt::check_steps(const std::vector<HuntTrials>& trials) const {
   return {};
 }
 
-void Hunt::take(const HuntTrial& trial, const std::vector<std::size_t>& kept_before) {
+// `kept`: of each target, the inputs of this round that later trials vary.
+Result<void> Hunt::take(const HuntTrial& trial, std::vector<std::vector<HuntInputs>>& kept) {
   ++run_.progress.trials;
   run_.progress.steps += trial.steps;
   run_.progress.met |= trial.meets;
   const std::size_t index = trial.number % targets_.size();
   HuntedTarget& hunted = targets_[index];
-  const auto inputs = [&] {
-    return make_trial(hunted.target, options_.seed, trial.number,
-                      std::span(hunted.kept).first(kept_before[index]));
-  };
+  const auto inputs = [&] { return hunted.trial(options_.seed, trial.number, targets_.size()); };
   if (trial.failure) {
     ++run_.progress.failures;
     timeouts_ += trial.failure->verdict == Verdict::timeout ? 1 : 0;
-    return note_failure(index, inputs(), *trial.failure);
+    note_failure(index, inputs(), *trial.failure);
+    return {};
   }
   auto& passing = passing_[index];
   if (passing.size() < most_passing_trials && trial.agrees) passing.push_back(inputs());
   constexpr double larger = 1.3;
-  const bool is_new = (trial.meets & ~hunted.met).any();
+  const HuntFeatures news = trial.meets & ~hunted.met;
   const bool is_larger = trial.deviation > hunted.deviation * larger && trial.deviation > 1e-3;
   hunted.met |= trial.meets;
   hunted.deviation = std::max(hunted.deviation, trial.deviation);
   run_.progress.deviation = std::max(run_.progress.deviation, trial.deviation);
-  const bool has_room = hunted.kept.size() < std::max<std::size_t>(24, most_kept / targets_.size());
-  if (!(is_new || is_larger) || !has_room) return;
-  HuntInputs kept = inputs();
-  constexpr std::uint32_t most_quiet = 1000;  // its variations would take too long
-  for (HuntTick& tick : kept.ticks) tick.quiet = std::min(tick.quiet, most_quiet);
-  hunted.kept.push_back(std::move(kept));
+  const bool is_of_case = trial.number / targets_.size() < hunted.first.size();  // already kept
+  const std::size_t of_trials = hunted.kept.size() - hunted.first.size() + kept[index].size();
+  const bool has_room =
+      is_of_case || of_trials < std::max<std::size_t>(24, most_kept / targets_.size());
+  if (!(news.any() || is_larger) || !has_room) return {};
+  if (!is_of_case) kept[index].push_back(to_vary(inputs()));
+  if (news.none() || !options_.on_new) return {};
+  // The inputs of a case are whole, so that they are the same case in each hunt.
+  return tell_news(hunted, is_of_case ? inputs() : begin_that_meets(news, inputs()), news);
+}
+
+Result<void> Hunt::tell_news(const HuntedTarget& hunted, const HuntInputs& inputs,
+                             const HuntFeatures& news) {
+  const auto toml = case_of(inputs, options_.level,
+                            {fmt::format("Kept by attest hunt: {}.", text_of(news)),
+                             "The inputs were made for this rate."});
+  if (!toml) return tl::unexpected(toml.error());
+  return options_.on_new(hunted.target.subject.profile, *toml);
 }
 
 void Hunt::note_failure(std::size_t target, HuntInputs inputs, const VectorResult& result) {

@@ -2,7 +2,8 @@
 // ticks, made from the seed and its number. A round is a fixed number of trials. Between rounds the
 // trials that reached something new in the reference are kept, in the order of their numbers, and
 // later trials vary them. So the findings depend on the seed and the rounds, and not on the number
-// of processes.
+// of processes. A hunt can begin with inputs of cases: they are its first trials, and later trials
+// vary them, too.
 #pragma once
 
 #include <cstddef>
@@ -26,6 +27,7 @@ struct HuntOptions {
   std::vector<ModuleUnderTest> subjects;  // take turns
   Level level = Level::numeric;
   std::uint64_t seed = 1;
+  std::vector<HuntInputs> first;  // tried first; a hunt does not end before, unless it is told to
   std::size_t least_steps = 1'000'000;  // the hunt ends after the round that reaches them
   std::function<bool()> is_over = [] { return false; };  // asked after a round, too
   bool fail_fast = false;  // the hunt ends after the round of the first failing trial, too
@@ -34,6 +36,9 @@ struct HuntOptions {
   // Called after the last round. If stop() is still true, no findings are made.
   std::function<void()> on_end = [] {};
   std::function<void(const HuntProgress&)> on_round = [](const HuntProgress&) {};
+  // Called after a round with the case of each trial that reached something new in the reference,
+  // up to the tick that did, in the order of the trials. An error ends the hunt. May be empty.
+  std::function<Result<void>(const std::string& profile, const std::string& toml)> on_new = {};
 };
 
 struct HuntRun {

@@ -22,12 +22,14 @@ HuntWindow window_in(std::size_t ticks, HuntRandom& random) {
   return {begin, std::min(ticks, begin + random.skewed(1, ticks))};
 }
 
+// REQUIRES: a fixed step.
+void choose_rate_of_port(const HuntTarget& target, HuntInputs& inputs) {
+  inputs.rate = *target.fixed_step;
+  inputs.start_us = static_cast<std::uint64_t>(inputs.rate.tick(1).count() / 1000);
+}
+
 void choose_times(const HuntTarget& target, HuntInputs& inputs, HuntRandom& random) {
-  if (target.fixed_step) {
-    inputs.rate = *target.fixed_step;
-    inputs.start_us = static_cast<std::uint64_t>(inputs.rate.tick(1).count() / 1000);
-    return;
-  }
+  if (target.fixed_step) return choose_rate_of_port(target, inputs);
   const ModuleInfo& info = info_of(target.subject.module);
   if (info.default_rates_hz.empty()) {
     inputs.rate = random.one_of(standard_rates());
@@ -59,11 +61,15 @@ void choose_gaps(const HuntTarget& target, HuntInputs& inputs, HuntRandom& rando
   if (random.chance(0.001)) inputs.ticks[random.below(ticks)].quiet = quiet_stretch;
 }
 
+// Recordings of the firmware show the rates of a recovery within 1e-5 rad/s, not to the bit.
+bool is_left_out(const HuntTarget& target, std::string_view parameter) {
+  return target.level == Level::exact && parameter == "VT_OPT_RECOV_EN";
+}
+
 void set_parameter(const HuntTarget& target, const Parameter& parameter, HuntInputs& inputs,
                    HuntRandom& random) {
   const std::string name(parameter.name);
-  // Recordings of the firmware show the rates of a recovery within 1e-5 rad/s, not to the bit.
-  if (target.level == Level::exact && name == "VT_OPT_RECOV_EN") return;
+  if (is_left_out(target, name)) return;
   std::erase_if(inputs.parameters,
                 [&](const ParameterChange& change) { return change.name == name; });
   const auto set = [&](std::size_t tick) {
@@ -86,6 +92,19 @@ void choose_parameters(const HuntTarget& target, HuntInputs& inputs, HuntRandom&
       inputs.parameters.push_back({0, std::string(parameter.name), 3});
     } else if (random.chance(share)) {
       set_parameter(target, parameter, inputs, random);
+    }
+  }
+}
+
+// With the times of a port that has a fixed step.
+void take_fixed_step(const HuntTarget& target, HuntInputs& inputs) {
+  choose_rate_of_port(target, inputs);
+  for (HuntTick& tick : inputs.ticks) {
+    tick.periods = 1;
+    for (const HuntTopic& topic : hunt_topics(target.subject.module)) {
+      for (const Channel* time : topic.times) {
+        if (time->field() == "timestamp_sample") set_relative_us(*time, tick.sample, 0);
+      }
     }
   }
 }
@@ -118,6 +137,14 @@ void limit_step(const HuntTarget& target, HuntInputs& inputs) {
     const double value = value_of(channels()[*dt], tick.sample);
     if (value < least_s) set_value(channels()[*dt], tick.sample, least_s);
   }
+}
+
+// The port can judge these inputs.
+void make_possible(const HuntTarget& target, HuntInputs& inputs) {
+  limit_step(target, inputs);
+  make_orderly(target.lacks, inputs);
+  leave_out_lacking(target.lacks, inputs);
+  make_orderly(target.lacks, inputs);
 }
 
 HuntInputs fresh_trial(const HuntTarget& target, HuntRandom& random) {
@@ -217,10 +244,15 @@ HuntInputs make_trial(const HuntTarget& target, std::uint64_t seed, std::uint64_
       mutate(target, kept, inputs, random);
     }
   }
-  limit_step(target, inputs);
-  make_orderly(target.lacks, inputs);
-  leave_out_lacking(target.lacks, inputs);
-  make_orderly(target.lacks, inputs);
+  make_possible(target, inputs);
+  return inputs;
+}
+
+HuntInputs fit_trial(const HuntTarget& target, HuntInputs inputs) {
+  if (target.fixed_step) take_fixed_step(target, inputs);
+  std::erase_if(inputs.parameters,
+                [&](const ParameterChange& change) { return is_left_out(target, change.name); });
+  make_possible(target, inputs);
   return inputs;
 }
 

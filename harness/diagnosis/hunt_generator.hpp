@@ -1,5 +1,5 @@
 // Makes the inputs of a trial: from nothing, or from those of an earlier trial that reached
-// something new.
+// something new or of a case.
 #pragma once
 
 #include <cstdint>
@@ -25,5 +25,8 @@ inline bool makes_one_instance(const HuntTarget& target) {
 // A function of the arguments alone. `kept`: inputs of earlier trials of this target; may be empty.
 HuntInputs make_trial(const HuntTarget& target, std::uint64_t seed, std::uint64_t trial,
                       std::span<const HuntInputs> kept);
+
+// The inputs of a case, as far as the port has what they use, and at its fixed step.
+HuntInputs fit_trial(const HuntTarget& target, HuntInputs inputs);
 
 }  // namespace attest

@@ -55,6 +55,11 @@ void HuntTopic::copy(const Sample& from, Sample& to) const {
               reinterpret_cast<const std::byte*>(&from) + begin, size);
 }
 
+bool HuntTopic::has_same(const Sample& one, const Sample& other) const {
+  return std::memcmp(reinterpret_cast<const std::byte*>(&one) + begin,
+                     reinterpret_cast<const std::byte*>(&other) + begin, size) == 0;
+}
+
 std::span<const HuntTopic> hunt_topics(Module module) {
   static const auto all = [] {
     std::array<std::vector<HuntTopic>, module_count> made;
@@ -67,10 +72,18 @@ std::span<const HuntTopic> hunt_topics(Module module) {
 }
 
 std::uint32_t parameter_bit(Module module) {
-  for (const std::string_view topic : updated_topics(module)) {
-    if (topic == "parameter_update") return channels()[updated_channel(module, topic)].bit;
-  }
-  return 0;
+  static const auto all = [] {  // asked at each tick
+    std::array<std::uint32_t, module_count> bits{};
+    for (const ModuleInfo& info : modules()) {
+      for (const std::string_view topic : updated_topics(info.module)) {
+        if (topic != "parameter_update") continue;
+        bits[static_cast<std::size_t>(info.module)] =
+            channels()[updated_channel(info.module, topic)].bit;
+      }
+    }
+    return bits;
+  }();
+  return all[static_cast<std::size_t>(module)];
 }
 
 bool is_from_first_tick(const Channel& channel) { return channel.field() == "armed_time"; }

@@ -43,6 +43,7 @@ struct HuntTopic {
   std::vector<const Channel*> times;   // those of `fields` that are times
   bool is_new(const Sample& sample) const { return bit == 0 || (sample.in.updated & bit) != 0; }
   void copy(const Sample& from, Sample& to) const;  // all fields
+  bool has_same(const Sample& one, const Sample& other) const;
 };
 
 // The topics of a module, without parameter_update. The result is valid as long as the program.

@@ -83,13 +83,19 @@ Result<ShrunkCase> Codec<ShrunkCase>::decode(const std::string& text) {
   });
 }
 
+HuntInputs HuntedTarget::trial(std::uint64_t seed, std::uint64_t number,
+                               std::size_t targets) const {
+  const std::size_t turn = number / targets;
+  return turn < first.size() ? first[turn] : make_trial(target, seed, number, kept);
+}
+
 Result<HuntTrials> TrialJob::run(std::size_t) {
   HuntTrials trials;
   std::unique_ptr<PortHost> host;
   for (std::uint64_t number = first_; number < first_ + count_ && !options_.stop(); ++number) {
     const HuntedTarget& hunted = targets_[number % targets_.size()];
     if (auto ready = ensure_host(host, options_); !ready) return tl::unexpected(ready.error());
-    const HuntInputs inputs = make_trial(hunted.target, seed_, number, hunted.kept);
+    const HuntInputs inputs = hunted.trial(seed_, number, targets_.size());
     auto trial = judge_trial(inputs, hunted.target, *host);
     if (!trial) return tl::unexpected(trial.error());
     const bool hangs = trial->failure && trial->failure->verdict == Verdict::timeout;
@@ -102,16 +108,12 @@ Result<HuntTrials> TrialJob::run(std::size_t) {
   return trials;
 }
 
-Result<std::string> case_of(const HuntInputs& inputs, Level level) {
+Result<std::string> case_of(const HuntInputs& inputs, Level level, const HuntReasons& reasons) {
   const auto trace = whole_trace_of(inputs);
   if (!trace) return tl::unexpected(trace.error());
-  const TraceCase about{inputs.subject.profile,
-                        hunt_group,
-                        "Found by attest hunt. Fill in the mistake or property that it tests.",
-                        inputs.rate,
-                        "The port fails at this rate.",
-                        level == Level::exact,
-                        inputs.subject.mixer};
+  const TraceCase about{
+      inputs.subject.profile, hunt_group,          reasons.why, inputs.rate, reasons.rates_why,
+      level == Level::exact,  inputs.subject.mixer};
   std::string text = case_of_trace(*trace, about);
   const auto parsed = parse_case_text(
       text, fmt::format("cases/{}/{}/trial.toml", inputs.subject.profile, hunt_group));

@@ -19,9 +19,13 @@ namespace attest {
 // A target, and what its trials have reached.
 struct HuntedTarget {
   HuntTarget target;
-  std::vector<HuntInputs> kept;
+  std::vector<HuntInputs> first;  // of cases: the first trials, unchanged
+  std::vector<HuntInputs> kept;   // that trials vary
   HuntFeatures met;
   double deviation = 0;  // the largest of a trial that did not fail
+
+  // The inputs of the trial. `targets`: that take turns.
+  HuntInputs trial(std::uint64_t seed, std::uint64_t number, std::size_t targets) const;
 };
 
 using HuntTrials = std::vector<HuntTrial>;
@@ -98,7 +102,13 @@ class ShrinkJob final : public PortJob<ShrunkCase> {
   HuntInputs inputs_;
 };
 
+// The reasons of a case: `why` and `rates_why`.
+struct HuntReasons {
+  std::string why = "Found by attest hunt. Fill in the mistake or property that it tests.";
+  std::string rates_why = "The port fails at this rate.";
+};
+
 // The text of a case with these inputs. Errors: the case does not make them; the reference fails.
-Result<std::string> case_of(const HuntInputs& inputs, Level level);
+Result<std::string> case_of(const HuntInputs& inputs, Level level, const HuntReasons& reasons = {});
 
 }  // namespace attest

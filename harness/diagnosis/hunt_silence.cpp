@@ -72,7 +72,7 @@ bool HuntSilences::settle(std::size_t index, std::span<const HuntTrials> round,
     const ChannelSet outputs = outputs_of(topic, hunted) & ~hunted.target.lacks.outputs;
     const HuntTrial* const trial = trial_that_shows(topic, index, targets.size(), outputs, round);
     if (trial == nullptr) continue;
-    found_.push_back({index, topic, make_trial(hunted.target, seed_, trial->number, hunted.kept),
+    found_.push_back({index, topic, hunted.trial(seed_, trial->number, targets.size()),
                       *trial->failure, outputs});
     hunted.target.lacks.outputs |= outputs;
     changes = true;

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/golden/reference.hpp"
 #include "harness/trace/output_topics.hpp"
@@ -170,6 +174,44 @@ Result<Trace> whole_trace_of(const HuntInputs& inputs) {
   HuntTrace parts(inputs);
   if (auto read = parts.next_part(whole_trace, whole); !read) return tl::unexpected(read.error());
   return whole;
+}
+
+HuntInputs begin_that_meets(const HuntFeatures& features, const HuntInputs& inputs) {
+  HuntFeatures met;
+  HuntTrace parts(inputs, &met);
+  Trace part;
+  std::size_t steps = 0, last = 0;
+  constexpr std::size_t steps_of_part = 4;  // the begin may be longer by as much
+  for (std::size_t before = 0; before < features.count();) {
+    if (!parts.next_part(steps_of_part, part) || part.samples.empty()) return inputs;
+    steps += part.samples.size();
+    const std::size_t now = (met & features).count();
+    if (now > before) last = steps - 1;
+    before = now;
+  }
+  HuntInputs begin = inputs;
+  begin.ticks.resize(tick_of_step(inputs, last) + 1);
+  std::erase_if(begin.parameters,
+                [&](const ParameterChange& change) { return change.tick >= begin.ticks.size(); });
+  return begin;
+}
+
+std::string text_of(const HuntFeatures& features) {
+  std::vector<std::string_view> decisions;
+  for (std::size_t i = 0; i < decision_count; ++i) {
+    for (std::size_t near = 1; near < 8; ++near) {
+      if (!features[i * 8 + near]) continue;
+      decisions.push_back(name_of(static_cast<Decision>(i)));
+      break;
+    }
+  }
+  if (!decisions.empty()) {
+    return fmt::format("the reference came nearer to a decision: {}", fmt::join(decisions, ", "));
+  }
+  for (std::size_t i = first_of_signs; i < first_of_topics; ++i) {
+    if (features[i]) return "an output of the reference had another sign";
+  }
+  return "topics were new or published in another combination";
 }
 
 std::size_t tick_of_step(const HuntInputs& inputs, std::size_t step) {

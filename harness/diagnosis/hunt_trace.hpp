@@ -65,6 +65,12 @@ Trace inputs_of(const HuntInputs& inputs);
 // All ticks, with the outputs of the reference.
 Result<Trace> whole_trace_of(const HuntInputs& inputs);
 
+// The inputs up to the tick that meets the last of `features`. REQUIRES: the trial meets them.
+HuntInputs begin_that_meets(const HuntFeatures& features, const HuntInputs& inputs);
+
+// "the reference came nearer to: tilt limit, yaw limit", for the reader of a case.
+std::string text_of(const HuntFeatures& features);
+
 // The index in `inputs.ticks` of a tick of the trace.
 std::size_t tick_of_step(const HuntInputs& inputs, std::size_t step);
 

@@ -84,6 +84,7 @@ Document hunt_document(const HuntReport& report) {
   document.facts = {{"attest", report.run.attest_version}, {"port", report.run.port}};
   const std::string& ended_early = report.found.ended_early;
   if (!ended_early.empty()) document.notes.push_back({"ended early: " + ended_early, false});
+  for (const std::string& note : report.notes) document.notes.push_back({note, false});
   if (findings.empty()) return document;
   DocumentTable table{"Findings",
                       {"case", "profile", "module", "rate [Hz]", "ticks", "trials", "resembles"}};
@@ -135,6 +136,7 @@ std::string hunt_json(const HuntReport& report) {
                       {"trials", progress.trials},
                       {"steps", progress.steps},
                       {"ended_early", report.found.ended_early},
+                      {"notes", report.notes},
                       {"findings", findings}});
 }
 

@@ -14,6 +14,7 @@ namespace attest {
 struct HuntReport {
   RunResult run;  // of the port, without results
   std::uint64_t seed = 1;
+  std::vector<std::string> notes;  // on what the hunt began with
   HuntRun found;
   // Of each finding: the files that were written, and the command that runs them; empty: none.
   struct Written {
@@ -29,9 +30,9 @@ Document hunt_document(const HuntReport& report);
 RunResult run_of(const HuntReport& report);
 
 // {"schema": "attest-hunt-1", "attest_version": ..., "port": ..., "level": ..., "seed": 1,
-//  "trials": ..., "steps": ..., "ended_early": reason or "", "findings": [{"name": ..., "fault": id
-//  or null, "trials": 12, "result": {as in the report of run}, "case": text, "case_file": ...,
-//  "trace_file": ..., "command": ...}]}. Deterministic.
+//  "trials": ..., "steps": ..., "ended_early": reason or "", "notes": [...], "findings": [{"name":
+//  ..., "fault": id or null, "trials": 12, "result": {as in the report of run}, "case": text,
+//  "case_file": ..., "trace_file": ..., "command": ...}]}. Deterministic.
 std::string hunt_json(const HuntReport& report);
 
 }  // namespace attest

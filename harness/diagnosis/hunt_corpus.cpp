@@ -1,0 +1,106 @@
+#include "harness/diagnosis/hunt_corpus.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "harness/casefile/parse.hpp"
+#include "harness/core/file.hpp"
+#include "harness/diagnosis/hunt_start.hpp"
+#include "harness/diagnosis/hunt_trial.hpp"
+
+namespace attest {
+namespace {
+
+namespace fs = std::filesystem;
+
+// In the order of their paths, without those directly in `folder`: they are about the suite.
+Result<std::vector<fs::path>> files_below(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code failed;
+  if (!fs::exists(folder, failed)) return files;
+  for (fs::recursive_directory_iterator it(folder, failed), end; !failed && it != end;
+       it.increment(failed)) {
+    if (it.depth() > 0 && !it->is_directory()) files.push_back(it->path());
+  }
+  if (failed) return fail_at(folder.string(), "cannot be read: " + failed.message());
+  std::ranges::sort(files);
+  return files;
+}
+
+// Of a case with several rates, the one that is nearest to the usual 250 Hz.
+Rate rate_of(const Case& the_case) {
+  const auto distance = [](const LoopRate& rate) {
+    return std::abs(std::log(rate.motor_unit.hertz() / 250));
+  };
+  return std::ranges::min(the_case.rates, {}, distance).motor_unit;
+}
+
+}  // namespace
+
+Result<HuntCorpus> HuntCorpus::open(const fs::path& folder,
+                                    std::span<const ModuleUnderTest> subjects, Level level) {
+  HuntCorpus corpus;
+  corpus.folder_ = folder;
+  const auto files = files_below(folder);
+  if (!files) return tl::unexpected(files.error());
+  for (const fs::path& file : *files) {
+    if (auto read = corpus.read(file, subjects, level); !read) return tl::unexpected(read.error());
+  }
+  return corpus;
+}
+
+Result<void> HuntCorpus::read(const fs::path& file, std::span<const ModuleUnderTest> subjects,
+                              Level level) {
+  if (file.extension() != ".toml") {
+    return fail_at(file.string(),
+                   "is not a case, and a corpus has only cases; remove it, or name another folder");
+  }
+  const auto parsed = parse_case(file);
+  if (!parsed) {
+    return fail(
+        fmt::format("{}\nthe corpus has this file, which is not a case of this attest; "
+                    "correct or remove it, or name another folder",
+                    parsed.error().to_string()));
+  }
+  ++cases_[{parsed->profile, parsed->module}];
+  const bool is_hunted = std::ranges::any_of(subjects, [&](const ModuleUnderTest& subject) {
+    return subject.profile == parsed->profile && subject.module == parsed->module;
+  });
+  const bool is_exact = parsed->exact_only && level != Level::exact;
+  if (parsed->flight || !is_hunted || is_exact) {
+    ++skipped_[parsed->flight ? "a flight"
+               : is_exact     ? "for the level exact only"
+                              : "of a profile or module that is not hunted"];
+    return {};
+  }
+  ++used_;
+  std::ranges::move(trials_of_case(*parsed, rate_of(*parsed)), std::back_inserter(inputs_));
+  return {};
+}
+
+Result<void> HuntCorpus::add(const std::string& profile, const std::string& toml) {
+  const fs::path group = folder_ / profile / hunt_group;
+  const auto parsed = parse_case_text(toml, group / "case.toml");
+  if (!parsed) return tl::unexpected(parsed.error());
+  constexpr std::size_t digits = 16;
+  const fs::path file =
+      group / fmt::format("{}_{}.toml", name_of(parsed->module), parsed->sha256.substr(0, digits));
+  std::error_code failed;
+  if (fs::exists(file, failed)) return {};
+  std::size_t& cases = cases_[{profile, parsed->module}];
+  if (cases >= most_of_corpus) {
+    ++left_out_;
+    return {};
+  }
+  fs::create_directories(group, failed);
+  if (failed) return fail_at(group.string(), "cannot be made: " + failed.message());
+  ++cases;
+  ++added_;
+  return write_file(file, toml, AtomicFile::Special::replaced);
+}
+
+}  // namespace attest
