@@ -12,6 +12,7 @@
 #include <sys/resource.h>
 
 #include "harness/cli/hunt_files.hpp"
+#include "harness/cli/hunt_progress.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/core/file.hpp"
@@ -20,7 +21,6 @@
 #include "harness/core/version.hpp"
 #include "harness/port/profiles.hpp"
 #include "harness/report/hunt_document.hpp"
-#include "harness/report/progress.hpp"
 #include "harness/report/report.hpp"
 #include "harness/report/text.hpp"
 
@@ -89,38 +89,6 @@ Result<std::vector<ModuleUnderTest>> subjects_of(const HuntCommandOptions& optio
                           options.host.port, fmt::join(names_of(*chosen), ", "),
                           fmt::join(options.profiles, ", ")));
 }
-
-// The progress on stderr, in the form that Progress has: after each round on a terminal, else every
-// 30 s.
-class HuntProgressLine {
- public:
-  explicit HuntProgressLine(bool is_quiet)
-      : form_(Progress::on_stderr(is_quiet).form), begin_(Clock::now()), latest_(begin_) {}
-  ~HuntProgressLine() { erase(); }
-
-  void show(const HuntProgress& now) {
-    const bool is_drawn = form_ == Progress::Form::drawn;
-    const bool is_due =
-        form_ == Progress::Form::lines && Clock::now() - latest_ >= Progress::line_interval;
-    if (!is_drawn && !is_due) return;
-    latest_ = Clock::now();
-    const double passed_s = std::chrono::duration<double>(latest_ - begin_).count();
-    fmt::print(stderr,
-               "{}{} steps, {:.0f} steps/s, {} met, {} failing trials, largest deviation of others "
-               "{:.3f} of the tolerance{}",
-               is_drawn ? "\r\x1b[K" : "attest: ", now.steps,
-               static_cast<double>(now.steps) / passed_s, now.met.count(), now.failures,
-               now.deviation, is_drawn ? "" : "\n");
-    std::fflush(stderr);
-  }
-  void erase() const {
-    if (form_ == Progress::Form::drawn) fmt::print(stderr, "\r\x1b[K");
-  }
-
- private:
-  Progress::Form form_;
-  Clock::time_point begin_, latest_;
-};
 
 struct HuntPlan {
   HuntOptions hunt;

@@ -23,9 +23,12 @@ double seconds_of(const Trace& steps) {
 // The rate of the suite that is nearest to that of the steps.
 Rate rate_of(const Trace& steps) {
   const double hz = static_cast<double>(steps.samples.size() - 1) / seconds_of(steps);
-  const auto distance = [&](int rate_hz) { return std::abs(std::log(rate_hz / hz)); };
-  const auto& rates_hz = info_of(module_of(steps.present)).default_rates_hz;
-  return Rate::hz(std::ranges::min(rates_hz, {}, distance));
+  const auto distance = [&](const Rate& rate) { return std::abs(std::log(rate.hertz() / hz)); };
+  std::vector<Rate> rates;
+  for (const int rate_hz : info_of(module_of(steps.present)).default_rates_hz) {
+    rates.push_back(Rate::hz(rate_hz));
+  }
+  return std::ranges::min(rates.empty() ? standard_rates() : rates, {}, distance);
 }
 
 std::vector<LogPart> parts_of(const Trace& steps, const Rate& rate) {
@@ -85,7 +88,7 @@ Result<std::vector<LogWindow>> windows_of(
   for (const LoggedUnit& unit : log.units) {
     if (!is_wanted({log.profile, unit.module})) {
       why = fmt::format(
-          "has the {} of {}, which this hunt has not; choose others with --profile "
+          "has the {} of {}, which this hunt does not have; choose others with --profile "
           "and --module",
           info_of(unit.module).title, log.profile);
       log.notes.push_back("is left out: " + why);

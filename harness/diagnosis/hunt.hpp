@@ -27,7 +27,7 @@ struct HuntOptions {
   std::vector<ModuleUnderTest> subjects;  // take turns
   Level level = Level::numeric;
   std::uint64_t seed = 1;
-  std::vector<HuntInputs> first;  // tried first; a hunt does not end before, unless it is told to
+  std::vector<HuntInputs> first;        // tried first, whatever least_steps is
   std::size_t least_steps = 1'000'000;  // the hunt ends after the round that reaches them
   std::function<bool()> is_over = [] { return false; };  // asked after a round, too
   bool fail_fast = false;  // the hunt ends after the round of the first failing trial, too
