@@ -147,3 +147,59 @@ load common
   run "$ATTEST" hunt --seconds 1 --module rate_law
   [ "$status" -eq 0 ]
 }
+
+@test "a hunt begins where the last one with this corpus ended" {
+  hunt() {
+    "$ATTEST" hunt --port fault:cascade-d-reversed --module rate_unit,rate_law \
+      --profile v1.16.0 --steps 1000 "$@" 2>/dev/null || [ $? -eq 1 ]
+  }
+  hunt --corpus kept >out.txt
+  grep -q "corpus kept: began with 0 cases; added" out.txt
+  cases=$(find kept -name '*.toml' | wc -l)
+  [ "$cases" -gt 20 ]
+  cp -r kept copy
+  hunt --corpus kept --jobs 1 --json one.json >/dev/null
+  (mv kept other; mv copy kept)
+  hunt --corpus kept --jobs 2 --json two.json >/dev/null
+  grep -q "corpus kept: began with $cases cases; added" one.json
+  cmp one.json two.json
+  diff -r kept other
+  run "$ATTEST" --suite kept list --group hunt
+  [ "$status" -eq 0 ]
+  has "px4-v1.16.0/hunt/rate_unit_"
+  run "$ATTEST" hunt --corpus kept --module mixer --steps 1000
+  [ "$status" -eq 0 ]
+  has "corpus kept: began with 0 cases, skipped $(find kept -name '*.toml' | wc -l) (of a profile"
+}
+
+@test "a corpus has only cases" {
+  mkdir notes
+  echo mine >notes/readme.txt
+  run "$ATTEST" hunt --steps 1000 --corpus notes
+  [ "$status" -eq 2 ]
+  has "notes: has files but no cases/, so it is no corpus; name another folder"
+  mkdir -p kept/cases/px4-v1.16.0/hunt
+  echo 'schema = 1' >kept/cases/px4-v1.16.0/hunt/mine.toml
+  run "$ATTEST" hunt --steps 1000 --corpus kept
+  [ "$status" -eq 2 ]
+  has "kept/cases/px4-v1.16.0/hunt/mine.toml"
+  has "correct or remove it, or name another folder"
+  run "$ATTEST" hunt --steps 1000 --corpus "$SOURCE"
+  [ "$status" -eq 2 ]
+}
+
+@test "a hunt varies what the units received in a flight" {
+  "$PYTHON" "$SOURCE/tests/cli/cascade_log.py" flight.ulg
+  "$ATTEST" sim gust --rate 250 --out gust.ulg >/dev/null
+  run "$ATTEST" hunt --log flight.ulg --log gust.ulg --steps 1000
+  [ "$status" -eq 0 ]
+  [[ $output =~ "log flight.ulg: began with "[1-9] ]]
+  [[ $output =~ "log gust.ulg: began with "[1-9] ]]
+  run "$ATTEST" hunt --log flight.ulg --steps 1000 --module mixer
+  [ "$status" -eq 2 ]
+  has "flight.ulg: has the rate unit of px4-v1.16.0, which this hunt does not have; choose others"
+  echo "no log" >wrong.ulg
+  run "$ATTEST" hunt --log wrong.ulg
+  [ "$status" -eq 2 ]
+  has "wrong.ulg: not a ULog"
+}

@@ -148,6 +148,46 @@ TEST(HuntGenerator, APortWithAFixedStepGetsItsTimes) {
   }
 }
 
+TEST(HuntGenerator, InputsOfACaseFitThePort) {
+  HuntTarget target = target_of(Module::rate_unit, "px4-v1.16.0");
+  const HuntInputs inputs = make_trial(target, 1, 4, {});
+  EXPECT_TRUE(are_same(fit_trial(target, inputs), inputs));
+  target.fixed_step = Rate::hz(400);
+  target.lacks.features = only(Feature::arming);
+  const HuntInputs fit = fit_trial(target, inputs);
+  EXPECT_EQ(fit.rate, Rate::hz(400));
+  EXPECT_EQ(fit.start_us, 2500u);
+  for (const HuntTick& tick : fit.ticks) EXPECT_EQ(tick.periods, 1u);
+  EXPECT_FALSE(uses_lacking(target.lacks, fit));
+  HuntTarget exact = target_of(Module::mc_att_control, "px4-v1.5.5", Level::exact);
+  HuntInputs recovers = make_trial(exact, 1, 0, {});
+  recovers.parameters.push_back({0, "VT_OPT_RECOV_EN", 1});
+  for (const ParameterChange& change : fit_trial(exact, recovers).parameters) {
+    EXPECT_NE(change.name, "VT_OPT_RECOV_EN");
+  }
+}
+
+TEST(HuntGenerator, TheBeginOfATrialMeetsWhatTheTrialMeets) {
+  const HuntTarget target = target_of(Module::rate_unit, "px4-v1.16.0");
+  const HuntInputs inputs = make_trial(target, 1, 5, {});
+  const auto met_by = [](const HuntInputs& trial) {
+    HuntFeatures met;
+    Trace whole;
+    EXPECT_TRUE(HuntTrace(trial, &met).next_part(whole_trace, whole));
+    return met;
+  };
+  const HuntFeatures all = met_by(inputs);
+  EXPECT_EQ(met_by(begin_that_meets(all, inputs)), all);
+  HuntInputs short_one = inputs;
+  short_one.ticks.resize(3);
+  std::erase_if(short_one.parameters,
+                [](const ParameterChange& change) { return change.tick > 2; });
+  const HuntFeatures few = met_by(short_one);
+  const HuntInputs begin = begin_that_meets(few, inputs);
+  EXPECT_LE(begin.ticks.size(), 4u);
+  EXPECT_EQ(met_by(begin) & few, few);
+}
+
 TEST(HuntGenerator, TrialsUseNoFeatureThatThePortLacks) {
   for (HuntTarget target : all_targets()) {
     for (std::size_t feature = 0; feature < feature_count; ++feature) {

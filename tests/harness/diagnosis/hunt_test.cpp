@@ -143,6 +143,96 @@ TEST(Hunt, FailFastEndsAtTheFirstFinding) {
   EXPECT_GE(right.progress.steps, options.least_steps);
 }
 
+// ---- cases that a hunt begins with --------------------------------------------------------------
+
+// Inputs with a roll rate that no trial has by chance.
+HuntInputs marked(float rate_rad_s) {
+  HuntTarget target;
+  target.subject = {"px4-v1.16.0", Module::rate_unit};
+  HuntInputs inputs = make_trial(target, 7, 3, {});
+  inputs.subject = target.subject;
+  for (HuntTick& tick : inputs.ticks) {
+    tick.sample.rate_in.vehicle_angular_velocity.xyz[0] = rate_rad_s;
+  }
+  return inputs;
+}
+
+bool is_marked(const Trace& trace, float rate_rad_s) {
+  return std::ranges::all_of(trace.samples, [&](const Sample& sample) {
+    return sample.rate_in.vehicle_angular_velocity.xyz[0] == rate_rad_s;
+  });
+}
+
+TEST(Hunt, BeginsWithEachInputOfACaseUnchanged) {
+  HuntOptions options = of_rate_unit();
+  constexpr int count = 200;  // more than a round
+  for (int i = 0; i < count; ++i) options.first.push_back(marked(0.001F * static_cast<float>(i)));
+  int trials = 0, found = 0;
+  const HuntRun run = found_by(options, changed_host([&](const ModuleUnderTest&, Trace& trace) {
+                                 if (trials < count) {
+                                   found += is_marked(trace, 0.001F * static_cast<float>(trials));
+                                 }
+                                 ++trials;
+                                 return std::nullopt;
+                               }));
+  EXPECT_EQ(found, count);
+  EXPECT_EQ(run.progress.trials, 256u);
+}
+
+TEST(Hunt, VariesTheInputsOfCases) {
+  HuntOptions options = of_rate_unit();
+  options.first = {marked(0.123F)};
+  std::size_t varied = 0;
+  (void)found_by(options, changed_host([&](const ModuleUnderTest&, Trace& trace) {
+                   varied += std::ranges::any_of(trace.samples, [](const Sample& sample) {
+                     return sample.rate_in.vehicle_angular_velocity.xyz[0] == 0.123F;
+                   });
+                   return std::nullopt;
+                 }));
+  EXPECT_GT(varied, 20u);
+}
+
+TEST(Hunt, LeavesOutInputsOfOtherSubjects) {
+  HuntOptions options = of_rate_unit();
+  options.first = {marked(0.123F)};
+  options.first[0].subject.profile = "px4-v1.15.4";
+  bool is_tried = false;
+  (void)found_by(options, changed_host([&](const ModuleUnderTest&, Trace& trace) {
+                   is_tried = is_tried || is_marked(trace, 0.123F);
+                   return std::nullopt;
+                 }));
+  EXPECT_FALSE(is_tried);
+}
+
+TEST(Hunt, ReportsEachTrialThatReachesSomethingNew) {
+  HuntOptions options = of_rate_unit();
+  std::vector<std::string> cases;
+  options.on_new = [&](const std::string& profile, const std::string& toml) {
+    EXPECT_EQ(profile, "px4-v1.16.0");
+    cases.push_back(toml);
+    return Result<void>();
+  };
+  (void)found_by(options, changed_host(unchanged));
+  EXPECT_GT(cases.size(), 20u);
+  EXPECT_THAT(cases[0],
+              HasSubstr("Kept by attest hunt: the reference came nearer to a decision: "));
+  const std::size_t before = cases.size();
+  options.least_steps = 60'000;
+  (void)found_by(options, changed_host(unchanged));
+  // Of the second hunt, which repeats the first. Later rounds reach less that is new.
+  EXPECT_LT(cases.size() - before, 4 * before);
+}
+
+TEST(Hunt, AnErrorOfTheCorpusEndsTheHunt) {
+  HuntOptions options = of_rate_unit();
+  options.on_new = [](const std::string&, const std::string&) -> Result<void> {
+    return fail("the disk is full");
+  };
+  const auto found = hunt(options, changed_host(unchanged));
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().message, "the disk is full");
+}
+
 // ---- silent topics ------------------------------------------------------------------------------
 
 // Publishes no topic of these names.
