@@ -16,9 +16,9 @@ namespace {
 std::string_view meaning_of(Verdict verdict) {
   switch (verdict) {
     case Verdict::pass:
-      return "agrees with the golden";
+      return "agrees with the reference";
     case Verdict::fail:
-      return "differs from the golden";
+      return "differs from the reference";
     case Verdict::crash:
       return "the port's process died";
     case Verdict::timeout:
@@ -26,7 +26,7 @@ std::string_view meaning_of(Verdict verdict) {
     case Verdict::protocol:
       return "the port broke the rules of the ABI";
     case Verdict::non_finite:
-      return "NaN or infinity where the golden has a number";
+      return "NaN or infinity where the reference has a number";
     case Verdict::unsupported:
       return "the port does not do this";
     case Verdict::skip:
@@ -120,8 +120,8 @@ std::string value_text(const Channel& channel, double value) {
 
 std::string distance_text(const Deviation& deviation, Level level) {
   if (channels()[deviation.channel].type != ChannelType::f32 || level == Level::events) return {};
-  if (!std::isfinite(deviation.want)) return "the golden is not finite here, on purpose";
-  if (!std::isfinite(deviation.got)) return "not a finite number where the golden has one";
+  if (!std::isfinite(deviation.want)) return "the reference is not finite here, on purpose";
+  if (!std::isfinite(deviation.got)) return "not a finite number where the reference has one";
   const double difference = std::abs(deviation.got - deviation.want);
   std::string out = fmt::format("off by {:.3g}", difference);
   if (deviation.ulp != 0) out += fmt::format(" ({} ulp)", deviation.ulp);

@@ -123,7 +123,7 @@ void judge(const Comparison& comparison, VectorResult& result) {
   const bool is_shown =
       !comparison.got_non_finite || !comparison.first || !std::isfinite(comparison.first->got);
   if (is_shown) return;
-  result.reason = fmt::format("{}{}an output is NaN or infinite where the golden has a number",
+  result.reason = fmt::format("{}{}an output is NaN or infinite where the reference has a number",
                               result.reason, result.reason.empty() ? "" : "; ");
 }
 

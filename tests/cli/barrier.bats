@@ -37,7 +37,7 @@ needs_scopes() {
     echo "$attack"
     attacked $attack
     [ "$status" -eq 1 ]
-    has "fail: differs from the golden"
+    has "fail: differs from the reference"
     [ -f "$INSIDE" ]
   done
 }
@@ -73,7 +73,7 @@ needs_scopes() {
   for attack in reads_memory opens_memory traces; do
     attacked $attack
     [ "$status" -eq 1 ]
-    has "fail: differs from the golden"
+    has "fail: differs from the reference"
   done
 }
 
@@ -82,7 +82,7 @@ needs_scopes() {
   for attack in stops kills queues; do
     attacked $attack
     [ "$status" -eq 1 ]
-    has "fail: differs from the golden"
+    has "fail: differs from the reference"
     run timeout -s KILL 60 "$ATTEST" sim hover --rate 250 --out f.csv \
       --port "lib:$PORTS/hostile_$attack.so"
     echo "sim: $status"
@@ -94,21 +94,21 @@ needs_scopes() {
   needs_landlock
   attacked freezes
   [ "$status" -eq 1 ]
-  has "fail: differs from the golden"
+  has "fail: differs from the reference"
 }
 
 @test "disks cannot be read past their files" {
   needs_landlock
   attacked reads_disk
   [ "$status" -eq 1 ]
-  has "fail: differs from the golden"
+  has "fail: differs from the reference"
 }
 
 @test "limits cannot be raised, and shared memory counts" {
   for attack in raises_files raises_memory raises_of_parent; do
     attacked $attack
     [ "$status" -eq 1 ]
-    has "fail: differs from the golden"
+    has "fail: differs from the reference"
   done
   CASE=p_alone attacked makes_shared
   [ "$status" -eq 1 ]
@@ -127,6 +127,6 @@ needs_scopes() {
     run "${without[@]}" run --suite "$SUITE" --port "lib:$PORTS/hostile_$attack.so" \
       --filter 'px4-v1.5.5/rates/*@250hz' --no-diagnose --fail-fast
     [ "$status" -eq 1 ]
-    has "fail: differs from the golden"
+    has "fail: differs from the reference"
   done
 }

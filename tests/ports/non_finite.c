@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Judged: non-finite (where the golden has a number), naming control[1] and step 20. */
+/* Judged: non-finite (where the reference has a number), naming control[1] and step 20. */
 #include <math.h>
 
 #include "wrapper.h"

@@ -85,10 +85,10 @@ TEST(FailureText, NanIsSaidInWordsNotAsADifference) {
   const char* channel = "out/mc_att_ctrl_status.yaw_rate_integ";
   const std::string got = failure_text(failing(deviation(channel, 0, nan, 1, 0)), run);
   EXPECT_THAT(got, HasSubstr("got   nan  0x7fc00000\n"));
-  EXPECT_THAT(got, HasSubstr("not a finite number where the golden has one"));
+  EXPECT_THAT(got, HasSubstr("not a finite number where the reference has one"));
   EXPECT_THAT(got, Not(HasSubstr("off by")));
   const std::string want = failure_text(failing(deviation(channel, 0, 1, nan, 0)), run);
-  EXPECT_THAT(want, HasSubstr("the golden is not finite here"));
+  EXPECT_THAT(want, HasSubstr("the reference is not finite here"));
 }
 
 TEST(FailureText, ACrashSaysNothingAboutTicks) {
