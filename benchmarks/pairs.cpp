@@ -66,10 +66,13 @@ std::vector<Group> groups(const std::string& filter) {
   return out;
 }
 
-// Few turns for the suite, for sweeps and for logs: their runs take long.
+// Few turns for the suite, for sweeps, logs and hunts: their runs take long.
 int turns(const std::string& floor) {
   if (floor.starts_with("suite/")) return 5;
-  return floor.starts_with("sweep/") || floor.starts_with("log/") ? 11 : 101;
+  for (const char* one : {"sweep/", "log/", "hunt/"}) {
+    if (floor.starts_with(one)) return 11;
+  }
+  return 101;
 }
 
 }  // namespace
@@ -135,6 +138,9 @@ const std::vector<Pair>& pairs() {
        "at most 70x one reading of its messages", 0, 0, "MB/s"},
       {"traces compared, all bits equal", "compare/compare", "compare/memcmp", 3,
        "at most 3x memcmp"},
+      // Also makes the inputs, measures the margins, and exchanges the traces with the port.
+      {"step of a hunt of a library, one job", "hunt/hunt", "hunt/steps", 0,
+       "at least 300000 steps/s", 0, 1 / 300e3, "steps/s"},
       {"flight, 250 Hz, MuJoCo at 1 kHz", "flight/250hz", "mj_step/250hz", 1.06,
        "at most 1.06x the bare steps"},
       {"the same, trace kept", "flight/250hz_trace", "mj_step/250hz", 1.08,

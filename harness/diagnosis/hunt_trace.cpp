@@ -60,10 +60,15 @@ HuntTopicSet published_in(const Trace& trace) {
 }
 
 HuntTrace::HuntTrace(const HuntInputs& inputs, HuntFeatures* meets)
-    : inputs_(inputs), meets_(meets), present_(channels_of(inputs.subject.module)) {
+    : inputs_(inputs),
+      meets_(meets),
+      present_(channels_of(inputs.subject.module)),
+      is_unit_(info_of(inputs.subject.module).is_unit()) {
   for (std::size_t i = 0; i < channels().size(); ++i) {
     const Channel& channel = channels()[i];
-    if (present_[i] && channel.is_output()) outputs_.push_back(&channel);
+    if (!present_[i] || !channel.is_output()) continue;
+    outputs_.push_back(&channel);
+    if (channel.type == ChannelType::u8) flags_.push_back(&channel);
   }
   (void)rewind();
 }
@@ -104,7 +109,7 @@ void HuntTrace::add_tick(Trace& part) {
     updated |= parameters;
   }
   held_.in.timestamp = now;
-  if (info_of(inputs_.subject.module).is_unit()) held_.in.updated = updated;
+  if (is_unit_) held_.in.updated = updated;
   part.samples.push_back(held_);
   ++step_;
   const bool goes_on = quiet_ < tick.quiet;
@@ -113,10 +118,6 @@ void HuntTrace::add_tick(Trace& part) {
 }
 
 void HuntTrace::note(const Trace& part) {
-  std::vector<const Channel*> flags;
-  for (const Channel* output : outputs_) {
-    if (output->type == ChannelType::u8) flags.push_back(output);
-  }
   PendingChanges changes(part.parameters);
   std::size_t last = 0;
   for (std::size_t tick = 0; tick < part.samples.size(); ++tick) {
@@ -132,10 +133,9 @@ void HuntTrace::note(const Trace& part) {
       if (outputs_[i]->type != ChannelType::f32) continue;
       meets_->set(first_of_signs + 4 * i + sign_of(float_of(*outputs_[i], sample)));
     }
-    const bool is_unit = info_of(inputs_.subject.module).is_unit();
-    const std::size_t pattern = pattern_of(is_unit ? sample.in.updated : 0, flags, sample);
+    const std::size_t pattern = pattern_of(is_unit_ ? sample.in.updated : 0, flags_, sample);
     meets_->set(first_of_topics + pattern);
-    const std::size_t published = pattern_of(0, flags, sample);
+    const std::size_t published = pattern_of(0, flags_, sample);
     meets_->set(first_of_changes + (published + 7 * last) % 1024);
     last = published;
   }
@@ -147,6 +147,7 @@ Result<void> HuntTrace::next_part(std::size_t most, Trace& part) {
   part.parameters.clear();
   part.present = present_;
   const std::size_t first = step_;
+  part.samples.reserve(std::min(most, inputs_.steps() - std::min(step_, inputs_.steps())));
   while (part.samples.size() < most && tick_ < inputs_.ticks.size()) add_tick(part);
   if (is_finished_) return {};
   is_finished_ = part.samples.size() < most;

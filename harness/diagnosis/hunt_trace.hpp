@@ -47,7 +47,9 @@ class HuntTrace final : public TraceParts {
   HuntFeatures* meets_;
   std::string source_ = "hunt";
   ChannelSet present_;
-  std::vector<const Channel*> outputs_;  // floats
+  std::vector<const Channel*> outputs_;
+  std::vector<const Channel*> flags_;  // of outputs_: bytes
+  bool is_unit_;
   std::unique_ptr<PortHost> reference_;
   std::unique_ptr<MarginMeter> meter_;
   // The next tick: of the inputs, of the quiet ticks after it, of the trace, and its period.
