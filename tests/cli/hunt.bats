@@ -149,7 +149,9 @@ load common
 }
 
 @test "a hunt begins where the last one with this corpus ended" {
-  hunt() { "$ATTEST" hunt --module rate_law --profile v1.16.0,v1.15.4 --steps 1000 "$@" 2>/dev/null; }
+  hunt() {
+    "$ATTEST" hunt --module rate_law --profile v1.16.0,v1.15.4 --steps 1000 "$@" 2>/dev/null
+  }
   hunt --corpus kept --port fault:cascade-d-reversed >out.txt || [ $? -eq 1 ]
   cases=$(find kept -name '*.toml' | wc -l)
   grep -q "corpus kept: began with 0 cases; added $cases" out.txt
