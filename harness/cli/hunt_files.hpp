@@ -11,8 +11,9 @@
 namespace attest::cli {
 
 struct HuntFiles {
-  std::string corpus, out;                 // folders of suites; may be empty
-  std::vector<std::string> logs, assumed;  // assumption_words()
+  std::string corpus, out;  // folders of suites; may be empty
+  std::vector<std::string> logs;
+  std::vector<std::string> assumed;  // in the logs: assumption_words()
 };
 
 // The corpus in the suite `root`, which is made if it does not exist. Errors: those of
@@ -29,8 +30,7 @@ Result<std::vector<HuntInputs>> inputs_of_logs(const HuntFiles& files, const std
 // Adds the findings to the corpus.
 Result<void> add_findings(const HuntRun& found, HuntCorpus& corpus);
 
-// "corpus found: began with 12 cases, 3 of a profile or module that is not hunted were skipped; 5
-// cases were added".
+// "corpus found: began with 12 cases, skipped 3 (a flight); added 5".
 std::string corpus_note(const std::string& root, const HuntCorpus& corpus);
 
 // Writes each finding as a case of the suite `out`, and its inputs with the right outputs as a

@@ -78,6 +78,7 @@ Result<void> HuntTrace::rewind() {
   meter_ = meets_ != nullptr ? margin_meter(inputs_.subject) : nullptr;
   tick_ = quiet_ = step_ = change_ = 0;
   period_ = 0;
+  last_pattern_ = 0;
   held_ = Sample();
   published_.reset();
   is_finished_ = false;
@@ -119,7 +120,6 @@ void HuntTrace::add_tick(Trace& part) {
 
 void HuntTrace::note(const Trace& part) {
   PendingChanges changes(part.parameters);
-  std::size_t last = 0;
   for (std::size_t tick = 0; tick < part.samples.size(); ++tick) {
     const Sample& sample = part.samples[tick];
     if (meter_) {
@@ -136,8 +136,8 @@ void HuntTrace::note(const Trace& part) {
     const std::size_t pattern = pattern_of(is_unit_ ? sample.in.updated : 0, flags_, sample);
     meets_->set(first_of_topics + pattern);
     const std::size_t published = pattern_of(0, flags_, sample);
-    meets_->set(first_of_changes + (published + 7 * last) % 1024);
-    last = published;
+    meets_->set(first_of_changes + (published + 7 * last_pattern_) % 1024);
+    last_pattern_ = published;
   }
 }
 

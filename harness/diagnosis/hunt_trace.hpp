@@ -56,6 +56,7 @@ class HuntTrace final : public TraceParts {
   std::size_t tick_ = 0, quiet_ = 0, step_ = 0;
   std::int64_t period_ = 0;
   std::size_t change_ = 0;
+  std::size_t last_pattern_ = 0;  // of the topics published in the last step
   Sample held_;
   HuntTopicSet published_;
   bool is_finished_ = false;

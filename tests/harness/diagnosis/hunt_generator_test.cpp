@@ -184,7 +184,7 @@ TEST(HuntGenerator, TheBeginOfATrialMeetsWhatTheTrialMeets) {
                 [](const ParameterChange& change) { return change.tick > 2; });
   const HuntFeatures few = met_by(short_one);
   const HuntInputs begin = begin_that_meets(few, inputs);
-  EXPECT_LE(begin.ticks.size(), 4u);
+  EXPECT_LE(begin.ticks.size(), 4u) << "of " << inputs.ticks.size();
   EXPECT_EQ(met_by(begin) & few, few);
 }
 
