@@ -178,6 +178,7 @@ Result<Simulation> simulate(const Sim& sim, const HostOptions& options, const De
     }
   }
   background.marks = marks_of(sim.the_case, flights->front());
+  background.metrics = sim.the_case.flight->metrics;
   Document document = flight_document(*flights, port, background);
   document.notes.insert(document.notes.end(), notes.begin(), notes.end());
   return Simulation{*std::move(flights), std::move(document)};

@@ -96,7 +96,7 @@ const float (&attitude_setpoint(const Sample& sample, bool is_attitude_unit))[4]
 class Flown {
  public:
   Flown(const Trace& trace, const Trace* attitude, const Window& window)
-      : trace_(trace), setpoints_(attitude_setpoints(trace, attitude)), window_(window) {
+      : trace_(trace), errors_deg_(attitude_errors_deg(trace, attitude)), window_(window) {
     const std::size_t ticks = std::min(trace.samples.size(), trace.plant.size());
     while (end_ < ticks && seconds(end_) < window.to_s) ++end_;
     while (begin_ < end_ && seconds(begin_) < window.from_s) ++begin_;
@@ -138,9 +138,7 @@ class Flown {
            static_cast<double>(trace_.plant[begin_].position_m[2]);
   }
 
-  double error_deg(std::size_t tick) const {
-    return angle_deg(trace_.plant[tick].q, setpoints_[tick]);
-  }
+  double error_deg(std::size_t tick) const { return errors_deg_[tick]; }
 
  private:
   double seconds(std::size_t tick) const {
@@ -150,7 +148,7 @@ class Flown {
   }
 
   const Trace& trace_;
-  std::vector<std::array<float, 4>> setpoints_;
+  std::vector<double> errors_deg_;
   Window window_;
   std::size_t begin_ = 0, end_ = 0;
 };
@@ -241,6 +239,15 @@ std::vector<std::array<float, 4>> attitude_setpoints(const Trace& flown, const T
                            : std::array{nanf, nanf, nanf, nanf});
   }
   return setpoints;
+}
+
+std::vector<double> attitude_errors_deg(const Trace& flown, const Trace* attitude) {
+  const auto setpoints = attitude_setpoints(flown, attitude);
+  std::vector<double> errors;
+  for (std::size_t tick = 0; tick < std::min(setpoints.size(), flown.plant.size()); ++tick) {
+    errors.push_back(angle_deg(flown.plant[tick].q, setpoints[tick]));
+  }
+  return errors;
 }
 
 double measured(const Metric& metric, const Trace& flown, const Trace* attitude) {

@@ -50,6 +50,9 @@ struct Metric {
 // The attitude setpoint in force at each tick of `flown`. `attitude` as for measured().
 std::vector<std::array<float, 4>> attitude_setpoints(const Trace& flown, const Trace* attitude);
 
+// The attitude error [deg] at each tick. `attitude` as for measured().
+std::vector<double> attitude_errors_deg(const Trace& flown, const Trace* attitude);
+
 // Infinite: a settling time if the error does not stay within the band; an overshoot if the error
 // is never within the band. NaN: the window has no tick, `attitude` has no tick, or a measured
 // value is NaN. `flown` is the trace of the unit that commands the motors. `attitude`: in a flight

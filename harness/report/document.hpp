@@ -124,6 +124,15 @@ struct PlotMark {
   bool is_quiet = false;  // an event, such as a gust; not a finding
 };
 
+// A horizontal line with a text, from x `first` to x `last`: a bound of the values there.
+struct PlotBound {
+  double first = 0, last = 0;
+  float level = 0;
+  std::string text;      // may be empty
+  bool is_upper = true;  // the bound forbids the values above it
+  bool is_missed = false;
+};
+
 struct Plot {
   std::string title;
   std::string unit = {};  // the unit of y; may be empty
@@ -131,6 +140,7 @@ struct Plot {
   std::vector<PlotSeries> series = {};
   std::optional<PlotBand> band = {};
   std::vector<PlotMark> marks = {};
+  std::vector<PlotBound> bounds = {};
   PlotShape shape = PlotShape::line;
   bool logarithmic_x = false, logarithmic_y = false;  // values <= 0 are not drawn
   // The y axis shows at least this much, so that noise does not look like a signal. 0: no limit.

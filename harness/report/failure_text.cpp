@@ -139,7 +139,7 @@ std::string reason_text(const VectorResult& result) {
 std::string sim_command(const VectorResult& result, const RunResult& run) {
   return one_line(
       fmt::format("{} sim {} --rate {} --vehicle {} --plant {} --port {} "
-                  "--out flown.csv",
+                  "--out flown.csv --html flight.html",
                   attest_with_suite(run), shell_word(result.case_id()), result.rate.to_string(),
                   shell_word(result.plant_configuration->vehicle),
                   name_of(result.plant_configuration->plant), shell_word(run.port)));

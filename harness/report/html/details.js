@@ -90,7 +90,7 @@
       plots,
       ...(plotted ? [] : withoutPlots(row)),
       ...command('Reproduce', row.reproduce),
-      ...command('Fly it, and write the trace', row.fly)
+      ...command('Fly it, and write its trace and a page with plots and bounds', row.fly)
     );
     if (plotted) addPlots(plots, row, plotted);
   };

@@ -107,12 +107,22 @@ json plot_to_json(const Plot& plot) {
   for (const PlotMark& mark : plot.marks) {
     marks.push_back({{"x", mark.x}, {"text", one_line(mark.text)}, {"quiet", mark.is_quiet}});
   }
+  json bounds = json::array();
+  for (const PlotBound& bound : plot.bounds) {
+    bounds.push_back({{"first", bound.first},
+                      {"last", bound.last},
+                      {"level", bound.level},
+                      {"text", one_line(bound.text)},
+                      {"upper", bound.is_upper},
+                      {"missed", bound.is_missed}});
+  }
   json out = {
       {"title", one_line(plot.title)},       {"unit", one_line(plot.unit)},
       {"note", one_line(plot.note)},         {"shape", name_of(plot.shape)},
       {"logarithmic_x", plot.logarithmic_x}, {"logarithmic_y", plot.logarithmic_y},
       {"least_span", plot.least_span},       {"marks", std::move(marks)},
-      {"grids", grids.x_to_json()},          {"series", series_to_json(plot, numbers, grids)}};
+      {"grids", grids.x_to_json()},          {"series", series_to_json(plot, numbers, grids)},
+      {"bounds", std::move(bounds)}};
   if (plot.band) {
     out["band"] = {{"name", one_line(plot.band->name)},
                    {"grid", of_band},

@@ -18,6 +18,8 @@ namespace attest {
 //      "logarithmic_x": false, "logarithmic_y": false,
 //
 //      "marks": [{"x": 0.4, "text": "...", "quiet": false}],
+//      "bounds": [{"first": 0, "last": 2, "level": 5, "text": "...", "upper": true,
+//                  "missed": false}],
 //
 //      "grids": ["..."],
 //

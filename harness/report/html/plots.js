@@ -33,10 +33,26 @@
     return {...plot, series, band};
   };
 
+  const extent = (values) =>
+    values.reduce(([low, high], y) => [Math.min(low, y), Math.max(high, y)], [Infinity, -Infinity]);
+
+  // The bounds that the y axis includes. A bound farther away than the extent of the values would
+  // make these small: it is a text at the edge.
+  const nearBounds = ({series, bounds, least_span}) => {
+    const [low, high] = extent(series.flatMap(({y}) => [...y]).filter(Number.isFinite));
+    const reach = Math.max(high - low, least_span);
+    return bounds.filter(({level}) => low - reach <= level && level <= high + reach);
+  };
+
   // dygraphs needs the same x for all series. null: the series has no sample at this x, and its
-  // line goes on.
-  const rowsOf = ({series, band, logarithmic_x}) => {
+  // line goes on. The bounds are series, too, so that the y axis includes them at each zoom.
+  const rowsOf = (plot) => {
+    const {series, band, logarithmic_x} = plot;
     const lines = series.map(({x, y}) => ({x, y}));
+    for (const {first, last, level} of nearBounds(plot)) {
+      const {x} = series[0];
+      lines.push({x, y: x.map((at) => (first <= at && at <= last ? level : NaN))});
+    }
     if (band) lines.push({x: band.x, y: band.low}, {x: band.x, y: band.high});
     const all = new Set(lines.map(({x}) => x));
     const xs = all.size === 1 ? lines[0].x : [...new Set([...all].flat())].sort((a, b) => a - b);
@@ -89,13 +105,51 @@
     context.fillText(text, at + (isRight ? -4 : 4), area.y + 12 + 14 * row);
   };
 
-  const underlay = ({band, marks}) => (context, area, plot) => {
+  // The ends of the line point to the forbidden side. `used` has the places of the texts so far.
+  const drawBound = (context, area, plot, bound, used) => {
+    const begin = Math.max(placeOf(plot, bound.first), area.x);
+    const end = Math.min(placeOf(plot, bound.last), area.x + area.w);
+    if (begin > end) return;
+    const bottom = area.y + area.h;
+    const exact = Math.round(plot.toDomYCoord(bound.level)) + 0.5;
+    const level = Math.min(Math.max(exact, area.y), bottom);
+    const up = bound.upper ? -1 : 1;
+    context.strokeStyle = context.fillStyle = colour(bound.missed ? 'fail' : 'quiet');
+    context.lineWidth = bound.missed ? 1.5 : 1;
+    if (level === exact) {
+      context.beginPath();
+      context.moveTo(begin, level + 7 * up);
+      context.lineTo(begin, level);
+      context.lineTo(end, level);
+      context.lineTo(end, level + 7 * up);
+      context.stroke();
+    }
+    const arrow = exact < area.y ? ' \u2191' : exact > bottom ? ' \u2193' : '';
+    context.font = '12px sans-serif';
+    context.textAlign = 'right';
+    const text = bound.text && bound.text + arrow;
+    const width = context.measureText(text).width;
+    const right = Math.min(Math.max(end - 4, area.x + width + 4), area.x + area.w - 4);
+    // The text is on the forbidden side of the line, if there is room.
+    const hasRoom = bound.upper ? level - 10 >= area.y + 12 : level + 19 <= bottom - 4;
+    let y = bound.upper === hasRoom ? level - 10 : level + 19;
+    const isUsed = () =>
+      used.some((one) => Math.abs(one.y - y) < 13 && one.right > right - width && one.left < right);
+    const away = y < area.y + area.h / 2 ? 1 : -1;
+    while (text && isUsed()) y += 13 * away;
+    used.push({left: right - width, right, y});
+    context.fillText(text, right, y);
+  };
+
+  const underlay = ({band, marks, bounds}) => (context, area, plot) => {
     context.save();
     context.beginPath();
     context.rect(area.x, area.y, area.w, area.h);
     context.clip();
     if (band) drawBand(context, plot, band);
     marks.forEach((mark, row) => drawMark(context, area, plot, mark, row % 4));
+    const used = [];
+    for (const bound of bounds) drawBound(context, area, plot, bound, used);
     context.restore();
   };
 
@@ -169,13 +223,12 @@
     return options;
   };
 
-  const extent = (values) =>
-    values.reduce(([low, high], y) => [Math.min(low, y), Math.max(high, y)], [Infinity, -Infinity]);
-
   // null: that of dygraphs. With this range of a logarithmic axis, the lowest bar would have no
   // height; and it would magnify values that hardly differ.
-  const valueRange = ({shape, logarithmic_y, series, least_span}) => {
+  const valueRange = (plot) => {
+    const {shape, logarithmic_y, series, least_span} = plot;
     const values = series.flatMap(({y}) => [...y]).filter(Number.isFinite);
+    values.push(...nearBounds(plot).map(({level}) => level));
     if (shape === 'bars' && logarithmic_y) {
       const [low, high] = extent(values.filter((value) => value > 0));
       return low <= high ? [low / 2, high * 2] : null;
@@ -189,7 +242,8 @@
   const optionsOf = (plot, xLabel) => {
     const options = styledAxes();
     options.axes.x.logscale = plot.logarithmic_x;
-    const hidden = plot.band ? ['low', 'high'] : [];
+    const hidden = nearBounds(plot).map((_, i) => `bound ${i}`);
+    if (plot.band) hidden.push('low', 'high');
     const isLong = plot.series.some(({x}) => x.length > 60);
     return {
       ...options,

@@ -83,6 +83,18 @@ TEST(PlotData, ABandHasItsOwnTimes) {
   EXPECT_EQ(data.at("shape"), "steps");
 }
 
+TEST(PlotData, ABoundHasItsPlaceAndSide) {
+  Plot plot{"Rates", "rad/s", ""};
+  plot.series = {{"got", {0, 1}, {5, 6}}};
+  plot.bounds = {{0.5, 1, 7, "turns: <9", true, true}, {0, 1, -7, "", false}};
+  const auto bounds = data_of(plot).at("bounds");
+  ASSERT_EQ(bounds.size(), 2u);
+  const nlohmann::json first = {{"first", 0.5},        {"last", 1.0},   {"level", 7.0},
+                                {"text", "turns: <9"}, {"upper", true}, {"missed", true}};
+  EXPECT_EQ(bounds[0], first);
+  EXPECT_EQ(bounds[1].at("upper"), false);
+}
+
 TEST(HtmlPage, TablesAlignNumbersAndMarkVerdicts) {
   Document page;
   page.head = {Verdict::fail, "differ", "a and b", ""};
