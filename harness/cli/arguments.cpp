@@ -206,6 +206,10 @@ int run_command_line(int argc, char** argv) {
   app.footer(footer);  // last: commands copy the footer that exists when they are added
   const auto ended = parse(app, argc, argv);
   if (ended) return *ended;
+  if (!globals.suite.empty()) {
+    // Also if the command reads no suite: else the barrier would hide another one.
+    if (const auto suite = find_suite(globals.suite); !suite) return report_error(suite.error());
+  }
   hide_suites(globals);
   return action();
 }

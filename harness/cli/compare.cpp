@@ -16,6 +16,7 @@
 #include "harness/host/file_format.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/signals_document.hpp"
+#include "harness/report/text.hpp"
 
 namespace attest::cli {
 namespace {
@@ -125,7 +126,7 @@ int compare_by_time(const CompareOptions& options, Level level, bool quiet) {
   }
   if (!found.agrees() || !quiet) {
     const DocumentHead& head = document.head;
-    fmt::print("{}: {}: {}\n{}", head.word, head.title, head.sentence,
+    fmt::print("{} {}: {}\n{}", capitals(head.word), head.title, head.sentence,
                render_text(document.tables.front(), {}));
   }
   return found.agrees() ? exit_ok : exit_failed;
@@ -146,14 +147,15 @@ int compare_command(const CompareOptions& options, const Globals& globals) {
   if (!compared) return report_error(compared.error());
   const Comparison& comparison = *compared;
   if (!comparison.agrees()) {
-    fmt::print("differ: {} (got), {} (want){}\n", options.got, options.want,
-               not_compared(comparison.only_got, options.want));
+    fmt::print("{} {} (got), {} (want){}\n", capitals(name_of(Conclusion::fail)), options.got,
+               options.want, not_compared(comparison.only_got, options.want));
     if (!comparison.mismatch.empty()) fmt::print("  {}\n", comparison.mismatch);
     fmt::print("{}", finding_text(as_result(comparison), *level));
     return exit_failed;
   }
   if (!globals.quiet || comparison.only_got.any()) {
-    fmt::print("agree: {} ticks, {}", comparison.ticks, name_of(*level));
+    fmt::print("{} {} ticks, {}", capitals(name_of(Conclusion::pass)), comparison.ticks,
+               name_of(*level));
     if (comparison.tightest) {
       fmt::print(", tightest headroom {:.3g}x on {} at tick {}", comparison.tightest->ratio,
                  channels()[comparison.tightest->channel].name, comparison.tightest->tick);

@@ -48,9 +48,9 @@ std::optional<Diagnosis> diagnosed(const RunResult& run, const Examined& examine
 
 int exit_code(const RunResult& run) {
   if (!run.errors.empty()) return exit_usage;
-  const Verdict conclusion = conclusion_of(run);
-  if (conclusion == Verdict::pass) return exit_ok;
-  if (conclusion == Verdict::fail) return exit_failed;
+  const Conclusion conclusion = conclusion_of(run);
+  if (conclusion == Conclusion::pass) return exit_ok;
+  if (conclusion == Conclusion::fail) return exit_failed;
   if (run.count(Verdict::xfail) > 0) {
     return report_error(
         {"no vector passed: every selected vector was an expected failure, skipped or "

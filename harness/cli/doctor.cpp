@@ -138,7 +138,7 @@ int doctor_command(const DoctorOptions& options, const Globals& globals) {
   }
   examine_limits(options, examination);
   examine_port(options.host, examination);
-  return examination.all_good() ? exit_ok : exit_usage;
+  return examination.code();
 }
 
 }  // namespace

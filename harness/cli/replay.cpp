@@ -20,6 +20,7 @@
 #include "harness/report/fleet_document.hpp"
 #include "harness/report/progress.hpp"
 #include "harness/report/replay_document.hpp"
+#include "harness/report/text.hpp"
 #include "harness/trace/provenance.hpp"
 
 namespace attest::cli {
@@ -132,12 +133,12 @@ class Replay {
       fmt::print(out_, "the mistakes that a log shows: attest faults --log {}\n",
                  options_.files.size() == 1 ? options_.files.front() : "FLIGHT.ulg");
     }
-    const Verdict verdict = failed_ > 0   ? Verdict::fail
-                            : passed_ > 0 ? Verdict::pass
-                                          : Verdict::skip;
-    fmt::print(out_, "{} {} of {} {}{} ({}, {}{})\n", outcome_of(verdict), passed_, entries_.size(),
-               what, apart > 0 ? fmt::format(", {} not compared", apart) : "", options_.host.port,
-               name_of(level_), arithmetic_);
+    const Conclusion conclusion = failed_ > 0   ? Conclusion::fail
+                                  : passed_ > 0 ? Conclusion::pass
+                                                : Conclusion::none;
+    fmt::print(out_, "{} {} of {} {}{} ({}, {}{})\n", capitals(name_of(conclusion)), passed_,
+               entries_.size(), what, apart > 0 ? fmt::format(", {} not compared", apart) : "",
+               options_.host.port, name_of(level_), arithmetic_);
   }
 
   const ReplayOptions& options_;

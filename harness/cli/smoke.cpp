@@ -11,7 +11,7 @@ struct SmokeOptions {
 int smoke_command(const SmokeOptions& options, const Globals&) {
   Examination examination;
   examine_port(options.host, examination);
-  return examination.all_good() ? exit_ok : exit_failed;
+  return examination.code();
 }
 
 }  // namespace

@@ -214,6 +214,14 @@ std::string_view name_of(Measure measure) {
   return names[static_cast<std::size_t>(measure)].second;
 }
 
+std::string_view unit_of(Measure measure) {
+  for (const auto& [suffix, unit] : {std::pair("_rad_s", "rad/s"), std::pair("_s", "s"),
+                                     std::pair("_deg", "deg"), std::pair("_m", "m")}) {
+    if (name_of(measure).ends_with(suffix)) return unit;
+  }
+  return "";
+}
+
 Result<Measure> parse_measure(std::string_view name) {
   std::vector<std::string> known;
   for (const auto& [measure, its_name] : names) {

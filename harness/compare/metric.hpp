@@ -29,6 +29,7 @@ enum class Measure {
 };
 
 std::string_view name_of(Measure measure);
+std::string_view unit_of(Measure measure);             // "rad/s"; may be empty
 Result<Measure> parse_measure(std::string_view name);  // the error lists the known ones
 
 // A part of the flight: times since the first tick [s].

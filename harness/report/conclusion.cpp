@@ -92,9 +92,9 @@ std::string suspects_text(const Diagnosis& diagnosis) {
 
 }  // namespace
 
-Verdict conclusion_of(const RunResult& run) {
-  if (run.failed() || !run.errors.empty()) return Verdict::fail;
-  return run.count(Verdict::pass) > 0 ? Verdict::pass : Verdict::skip;
+Conclusion conclusion_of(const RunResult& run) {
+  if (run.failed() || !run.errors.empty()) return Conclusion::fail;
+  return run.count(Verdict::pass) > 0 ? Conclusion::pass : Conclusion::none;
 }
 
 std::string conclusion_text(const RunResult& run, std::string_view duration) {

@@ -9,8 +9,8 @@
 
 namespace attest {
 
-// fail: a vector failed, or an error occurred. pass: at least one vector passed. skip: all others.
-Verdict conclusion_of(const RunResult& run);
+// fail: a vector failed, or an error occurred. pass: at least one vector passed. none: all others.
+Conclusion conclusion_of(const RunResult& run);
 
 // "18 failed, 1 passed; 1 need --level exact (px4-v1.5.5, numeric, 1 rate) in 1.2 s". `duration` is
 // " in 1.2 s", or empty.

@@ -90,11 +90,6 @@ std::string block(const DocumentTable& table, const std::vector<TextColumn>& col
 
 }  // namespace
 
-std::string_view outcome_of(Verdict verdict) {
-  if (verdict == Verdict::pass) return "PASS";
-  return fails_a_run(verdict) ? "FAIL" : "NONE";
-}
-
 Colour colour_of(Verdict verdict) {
   if (verdict == Verdict::pass) return Colour::green;
   return fails_a_run(verdict) ? Colour::red : Colour::yellow;
@@ -104,6 +99,11 @@ Cell::Cell(std::optional<Nanoseconds> time_, std::optional<Verdict> verdict_)
     : text(time_ ? fmt::format("{:.4g}", in_microseconds(*time_)) : "-"),
       verdict(verdict_),
       time(time_) {}
+
+Cell agreement_cell(bool agrees) {
+  return {std::string(name_of(agrees ? RowVerdict::agrees : RowVerdict::differs)),
+          agrees ? Verdict::pass : Verdict::fail};
+}
 
 std::string human_time(Nanoseconds time) {
   const auto ns = static_cast<double>(time.count());
@@ -158,10 +158,8 @@ std::string render_text(const DocumentTable& table, TerminalStyle style) {
 }
 
 std::string render_text(const DocumentHead& head, TerminalStyle style) {
-  std::string word = head.word;
-  for (char& letter : word) letter = static_cast<char>(std::toupper(letter));
   return fmt::format("{}\n{}{}{}\n", one_line(head.title),
-                     painted(word, colour_of(head.verdict), style),
+                     painted(capitals(head.word), colour_of(head.verdict), style),
                      head.sentence.empty() ? "" : " ", one_line(head.sentence));
 }
 

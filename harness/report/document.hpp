@@ -2,7 +2,7 @@
 // render_text() makes the text for the terminal, and html_page() the page:
 //
 //     Document document;
-//     document.head = {Verdict::fail, "differ", "got.csv and want.csv", "3 of 28 differ"};
+//     document.head = {Conclusion::fail, "got.csv and want.csv", "3 of 28 differ"};
 //     document.facts = {{"tolerance", "1e-4"}};
 //     document.tables = {{"Signals", {"signal", "deviating", "worst [rad/s]"},
 //                         {{"out/vehicle_rates_setpoint.roll", "17", "0.2"}}}};
@@ -31,12 +31,24 @@
 namespace attest {
 
 // The head of the document. The verdict gives the symbol and the colour of the page: pass, a
-// failure, or neither.
+// failure, or neither. The word is the name of a Verdict or of a Conclusion.
 struct DocumentHead {
-  Verdict verdict = Verdict::pass;
-  std::string word;           // "pass", "differ"
-  std::string title;          // what was examined; also the title of the page
-  std::string sentence = {};  // further particulars; may be empty
+  DocumentHead() : DocumentHead(Verdict::pass, {}) {}
+  DocumentHead(Verdict verdict_, std::string title_, std::string sentence_ = {})
+      : verdict(verdict_),
+        word(name_of(verdict_)),
+        title(std::move(title_)),
+        sentence(std::move(sentence_)) {}
+  DocumentHead(Conclusion conclusion, std::string title_, std::string sentence_ = {})
+      : verdict(verdict_of(conclusion)),
+        word(name_of(conclusion)),
+        title(std::move(title_)),
+        sentence(std::move(sentence_)) {}
+
+  Verdict verdict;
+  std::string_view word;
+  std::string title;     // what was examined; also the title of the page
+  std::string sentence;  // further particulars; may be empty
 };
 
 // A line below the head.
@@ -67,6 +79,8 @@ struct Cell {
   std::string link = {};  // DocumentTable::id of a table of the page
   std::optional<Nanoseconds> time;
 };
+
+Cell agreement_cell(bool agrees);
 
 // A heading and lines; on the page next to other sections.
 struct Section {
@@ -193,8 +207,6 @@ std::string render_text(const DocumentTable& table, TerminalStyle style);
 // the outermost value of the series, or at the other bound if that is farther out.
 std::pair<float, float> drawn_bounds(double min, double max, const std::vector<PlotSeries>& series);
 
-// "PASS", "FAIL", or "NONE" for a verdict that is neither.
-std::string_view outcome_of(Verdict verdict);
 Colour colour_of(Verdict verdict);
 
 // Whether a column of a table has numbers.

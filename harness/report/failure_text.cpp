@@ -12,33 +12,6 @@
 namespace attest {
 namespace {
 
-// The text for a result without a reason.
-std::string_view meaning_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::pass:
-      return "agrees with the reference";
-    case Verdict::fail:
-      return "differs from the reference";
-    case Verdict::crash:
-      return "the port's process died";
-    case Verdict::timeout:
-      return "the port did not answer in time";
-    case Verdict::protocol:
-      return "the port broke the rules of the ABI";
-    case Verdict::non_finite:
-      return "NaN or infinity where the reference has a number";
-    case Verdict::unsupported:
-      return "the port does not do this";
-    case Verdict::skip:
-      return "not run";
-    case Verdict::xfail:
-      return "failed, as expected";
-    case Verdict::xpass:
-      return "passed although it is listed as an expected failure";
-  }
-  return "";
-}
-
 // The shortest decimal that reads back as the same value.
 std::string decimal(const Channel& channel, double value) {
   if (channel.type == ChannelType::f32) return fmt::format("{}", static_cast<float>(value));

@@ -92,8 +92,10 @@ Document fleet_document(const std::string& port, const std::vector<FleetLog>& lo
     table.rows.push_back(std::move(row.cells));
   }
   Document document;
-  const Verdict verdict = failed > 0 ? Verdict::fail : passed > 0 ? Verdict::pass : Verdict::skip;
-  document.head = {verdict, std::string(name_of(verdict)), fmt::format("{} logs", logs.size()),
+  const Conclusion conclusion = failed > 0   ? Conclusion::fail
+                                : passed > 0 ? Conclusion::pass
+                                             : Conclusion::none;
+  document.head = {conclusion, fmt::format("{} logs", logs.size()),
                    fmt::format("{}: {} agree, {} differ, {} not compared", port, passed, failed,
                                rows.size() - passed - failed)};
   document.tables.push_back(std::move(table));

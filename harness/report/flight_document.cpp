@@ -178,7 +178,8 @@ DocumentTable metrics_table(const std::vector<SimulatedFlight>& flights) {
       all_within = all_within && is_known && metrics[i].within();
     }
     row.emplace_back(metric_bounds(metric));
-    row.emplace_back(all_within ? "within" : "missed", all_within ? Verdict::pass : Verdict::fail);
+    row.emplace_back(std::string(name_of(all_within ? RowVerdict::within : RowVerdict::missed)),
+                     all_within ? Verdict::pass : Verdict::fail);
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -191,7 +192,7 @@ DocumentHead head_of(const std::vector<SimulatedFlight>& flights, const Declarat
   const VectorResult& result = (failed == flights.end() ? flights.front() : *failed).result;
   std::string title = flights.front().result.id();
   for (std::size_t i = 1; i < flights.size(); ++i) title += " and on " + plant_of(flights[i]);
-  return {result.verdict, std::string(name_of(result.verdict)), std::move(title),
+  return {result.verdict, std::move(title),
           fmt::format("{} {}, {} ticks", port.name, port.version, flights.front().result.ticks)};
 }
 

@@ -115,7 +115,7 @@ std::string github_summary(const RunResult& run, double wall_s,
                            const std::optional<Diagnosis>& diagnosis) {
   const std::string text = render_summary(run, wall_s, {}, diagnosis);
   const std::string fence = fence_of(text);
-  std::string out = fmt::format("### attest: {}\n\n", outcome_of(conclusion_of(run)));
+  std::string out = fmt::format("### attest: {}\n\n", capitals(name_of(conclusion_of(run))));
   for (const DocumentTable& table : matrices_of(run)) out += markdown(table);
   return out +
          fmt::format("<details><summary>the report</summary>\n\n{}text\n{}{}\n\n</details>\n\n",

@@ -79,8 +79,8 @@ void add_lines(const HuntFinding& finding, const HuntReport::Written& written,
 Document hunt_document(const HuntReport& report) {
   const auto& findings = report.found.findings;
   Document document;
-  document.head = {findings.empty() ? Verdict::pass : Verdict::fail,
-                   findings.empty() ? "pass" : "fail", title_of(report), sentence_of(report)};
+  document.head = {findings.empty() ? Conclusion::pass : Conclusion::fail, title_of(report),
+                   sentence_of(report)};
   document.facts = {{"attest", report.run.attest_version}, {"port", report.run.port}};
   const std::string& ended_early = report.found.ended_early;
   if (!ended_early.empty()) document.notes.push_back({"ended early: " + ended_early, false});

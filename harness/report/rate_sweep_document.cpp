@@ -122,7 +122,8 @@ PlotBand bounds_of(const Metric& metric, const std::vector<PlotSeries>& series) 
 }
 
 Plot metric_plot(const Metric& metric, std::size_t number, const std::vector<Line>& lines) {
-  Plot plot{metric.name, std::string(name_of(metric.measure)), "infinite values are not drawn"};
+  Plot plot{fmt::format("{}: {}", metric.name, name_of(metric.measure)),
+            std::string(unit_of(metric.measure)), "infinite values are not drawn"};
   plot.logarithmic_x = true;
   for (const Line& line : lines) {
     PlotSeries series = empty_series(line);
@@ -156,6 +157,12 @@ Plot delay_plot(const RateSweepRun& run, const std::vector<Line>& lines) {
   return plot;
 }
 
+bool has_no_value(const Plot& plot) {
+  return std::ranges::none_of(plot.series, [](const PlotSeries& series) {
+    return std::ranges::any_of(series.y, [](float value) { return std::isfinite(value); });
+  });
+}
+
 }  // namespace
 
 Document rate_sweep_document(const RateSweepRun& run) {
@@ -166,7 +173,7 @@ Document rate_sweep_document(const RateSweepRun& run) {
     document.notes.push_back({fmt::format("{}: {}", line.name(), line.failure), true});
   }
   const bool failed = !document.notes.empty();
-  document.head = {failed ? Verdict::fail : Verdict::pass, failed ? "fail" : "measured",
+  document.head = {failed ? Conclusion::fail : Conclusion::measured,
                    fmt::format("{}: limits of loop rate and delay", run.the_case.id()),
                    fmt::format("{} {}, {} with a plant", run.says.name, run.says.version,
                                counted(lines.size(), "vehicle"))};
@@ -179,7 +186,8 @@ Document rate_sweep_document(const RateSweepRun& run) {
     group.plots.push_back(metric_plot(metrics[i], i, lines));
   }
   group.plots.push_back(delay_plot(run, lines));
-  document.groups = {std::move(group)};
+  std::erase_if(group.plots, has_no_value);
+  if (!group.plots.empty()) document.groups = {std::move(group)};
   return document;
 }
 

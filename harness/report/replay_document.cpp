@@ -74,9 +74,8 @@ std::string title_of(const TopicAgreement& topic) {
 // `logged`: the samples of the topic in the log.
 std::vector<Cell> row_of(const TopicAgreement& topic, std::size_t logged, const LogLimits& limits) {
   const Cell verdict = topic.not_judged.empty()
-                           ? Cell(topic.agrees(limits) ? "agrees" : "differs",
-                                  topic.agrees(limits) ? Verdict::pass : Verdict::fail)
-                           : Cell("not judged");
+                           ? agreement_cell(topic.agrees(limits))
+                           : Cell(std::string(name_of(RowVerdict::not_judged)));
   return {title_of(topic),
           verdict,
           fmt::format("{} of {}", topic.paired, logged),
@@ -281,7 +280,7 @@ Document log_document(const FlightLog& log, const std::vector<LogResult>& result
     document.groups.push_back(plots_of_outputs(logged, results[i].got, "logged",
                                                fmt::format("Outputs of the {}", title)));
   }
-  document.head = {verdict, std::string(name_of(verdict)), log.units.front().trace.source,
+  document.head = {verdict, log.units.front().trace.source,
                    fmt::format("{}, {}, {}", port, log.profile, fmt::join(ticks, " and "))};
   for (const std::string& note : log.notes) document.notes.push_back({note});
   return document;
@@ -290,7 +289,7 @@ Document log_document(const FlightLog& log, const std::vector<LogResult>& result
 Document trace_document(const Trace& want, const Trace& got, const VectorResult& result,
                         const std::string& port) {
   Document document;
-  document.head = {result.verdict, std::string(name_of(result.verdict)), want.source,
+  document.head = {result.verdict, want.source,
                    fmt::format("{}, {}, {} ticks", port, result.profile, want.samples.size())};
   if (!result.reason.empty()) document.notes.push_back({result.reason, true});
   document.facts = {{"first deviation", deviation_text(result.first)},

@@ -33,16 +33,21 @@ class SecondsOf {
   std::uint64_t begin_us_ = std::numeric_limits<std::uint64_t>::max();
 };
 
-std::string unit_of_signal(const std::string& name) {
+// A plot with the unit of the signal. A difference within the tolerance looks small in it.
+Plot plot_of_signal(const std::string& name) {
   for (const ModuleInfo& info : modules()) {
     if (!info.has_law()) continue;
     for (const char* prefix : {"out/", "in/"}) {
-      if (const auto channel = find_channel(info.module, prefix + name)) {
-        return std::string(unit_of(channels()[*channel].quantity));
+      const auto channel = find_channel(info.module, prefix + name);
+      if (!channel) continue;
+      Plot plot{name, std::string(unit_of(channels()[*channel].quantity))};
+      if (channels()[*channel].is_output()) {
+        plot.least_span = 4 * Tolerances().of(*channel).absolute;
       }
+      return plot;
     }
   }
-  return "";
+  return {name};
 }
 
 PlotSeries series_of(const TimedSignal& signal, const std::string& name, const SecondsOf& clock,
@@ -73,11 +78,11 @@ PlotSeries difference_of(const TimedSignal& got, const TimedSignal& want, const 
 // Adds two plots: both signals, and their difference.
 void add_pair(const TimedSignal& got, const TimedSignal& want, const SecondsOf& clock,
               std::int64_t shift_us, PlotGroup& group) {
-  const std::string unit = unit_of_signal(want.name);
-  Plot both{want.name, unit};
+  Plot both = plot_of_signal(want.name);
   both.series = {series_of(want, "want", clock), series_of(got, "got", clock, shift_us)};
   both.series[1].pattern = LinePattern::dashed;
-  Plot difference{want.name + ": difference", unit};
+  Plot difference = plot_of_signal(want.name);
+  difference.title += ": difference";
   difference.series = {difference_of(got, want, clock, shift_us)};
   group.plots.push_back(std::move(both));
   group.plots.push_back(std::move(difference));
@@ -160,10 +165,8 @@ std::vector<Cell> row_of(const SignalComparison& signal) {
     return pair ? fmt::format("{:.4g}", std::abs(pair->got - pair->want)) : std::string();
   };
   return {signal.name,
-          {signal.agrees()       ? "agrees"
-           : signal.compared > 0 ? "differs"
-                                 : "no timestamp in common",
-           signal.agrees() ? Verdict::pass : Verdict::fail},
+          signal.agrees() || signal.compared > 0 ? agreement_cell(signal.agrees())
+                                                 : Cell("no timestamp in common", Verdict::fail),
           fmt::to_string(signal.compared),
           fmt::to_string(signal.deviating),
           signal.first ? fmt::to_string(signal.first->time_us) : "",
@@ -198,11 +201,11 @@ Document signals_document(const std::vector<TimedSignals>& sources,
       document.notes.push_back({source.source + ": " + note});
   }
   const SecondsOf clock(all);
-  document.head = {Verdict::pass, "plots", fmt::format("{}", fmt::join(files, ", ")),
+  document.head = {Conclusion::measured, fmt::format("{}", fmt::join(files, ", ")),
                    counted(names.size(), "signal")};
   PlotGroup group{"", time_label, {}};
   for (const std::string& name : names) {
-    Plot plot{name, unit_of_signal(name)};
+    Plot plot = plot_of_signal(name);
     for (const TimedSignals& source : sources) {
       if (const TimedSignal* signal = source.find(name)) {
         plot.series.push_back(series_of(*signal, source.source, clock));
@@ -218,8 +221,7 @@ Document signals_document(const std::vector<TimedSignals>& sources,
 Document comparison_document(const SignalsComparison& comparison, const TimedSignals& got,
                              const TimedSignals& want, std::int64_t shift_us) {
   Document document;
-  const bool agrees = comparison.agrees();
-  document.head = {agrees ? Verdict::pass : Verdict::fail, agrees ? "agree" : "differ",
+  document.head = {comparison.agrees() ? Conclusion::pass : Conclusion::fail,
                    fmt::format("{} (got), {} (want), by time{}", got.source, want.source,
                                shift_us == 0 ? "" : fmt::format(", shifted by {} us", shift_us)),
                    fmt::format("{} of {} common signals agree, {} samples",

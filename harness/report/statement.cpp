@@ -68,19 +68,23 @@ std::string claimed(const Claim& claim) {
 }
 
 std::string text_of(const Claim& claim, const RunResult& run) {
+  const std::string_view none = name_of(Standing::none);
   const std::string profile = claim.failing.empty() ? claimed(claim) : profile_text(claim.profile);
   if (claim.failing.size() == 1) {
-    return fmt::format("none: {}, a group fails ({})", profile, names_of(claim.failing));
+    return fmt::format("{}: {}, a group fails ({})", none, profile, names_of(claim.failing));
   }
   if (!claim.failing.empty()) {
-    return fmt::format("none: {}, {} groups fail ({})", profile, claim.failing.size(),
+    return fmt::format("{}: {}, {} groups fail ({})", none, profile, claim.failing.size(),
                        names_of(claim.failing));
   }
   std::string what =
       fmt::format("{}, {}{}, {}", profile, name_of(run.level), arithmetic_of(run), rate_text(run));
   if (!claim.is_of_modules) what += ", " + which_groups(claim);
-  if (claim.is_complete()) return (claim.conforms() ? "conformant: " : "events agree: ") + what;
-  return fmt::format("partial: {} (because: {})", what,
+  if (claim.is_complete()) {
+    const auto standing = claim.conforms() ? Standing::conformant : Standing::events_agree;
+    return fmt::format("{}: {}", name_of(standing), what);
+  }
+  return fmt::format("{}: {} (because: {})", name_of(Standing::partial), what,
                      one_line(fmt::format("{}", fmt::join(claim.missing, "; "))));
 }
 
@@ -121,7 +125,7 @@ std::string on_the_badge(const RunResult& run, Standing standing) {
   return fmt::format("{} {}{}{}", profile,
                      standing == Standing::events_agree ? name_of(standing) : name_of(run.level),
                      arithmetic_of(run).empty() ? "" : ", fixed point",
-                     standing == Standing::partial ? ", partial" : "");
+                     standing == Standing::partial ? fmt::format(", {}", name_of(standing)) : "");
 }
 
 const char* colour_of(Standing standing) {
@@ -147,13 +151,14 @@ std::string box(int x, int width, const char* colour) {
 }  // namespace
 
 Statement statement_of(const RunResult& run) {
+  const std::string none(name_of(Standing::none));
   const auto claims = claims_of(run);
   const bool fails = std::any_of(claims.begin(), claims.end(),
                                  [](const Claim& claim) { return !claim.failing.empty(); });
   if (!fails && (!run.errors.empty() || run.stopped_early)) {
-    return {{"none: the run is not complete"}, ""};
+    return {{none + ": the run is not complete"}, ""};
   }
-  if (!fails && run.count(Verdict::pass) == 0) return {{"none: no vector passed"}, ""};
+  if (!fails && run.count(Verdict::pass) == 0) return {{none + ": no vector passed"}, ""};
   Statement statement{{}, subject_of(run)};
   for (const Claim& claim : claims) statement.claims.push_back(text_of(claim, run));
   return statement;

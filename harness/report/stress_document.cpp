@@ -277,12 +277,8 @@ DocumentTable result_table(const StressResult& stress) {
 
 Document stress_document(const StressRun& run) {
   const RunResult all = run_of(run);
-  const std::string_view word = verdict_of(run);
   Document document;
-  document.head = {word == "pass"   ? Verdict::pass
-                   : word == "fail" ? Verdict::fail
-                                    : Verdict::skip,
-                   std::string(word),
+  document.head = {conclusion_of(run),
                    fmt::format("{} {} in real time", all.port_name, all.port_version),
                    fmt::format("{} of {} hold in real time (load: {})", all.count(Verdict::pass),
                                counted(all.results.size(), "rate"), run.load)};

@@ -23,10 +23,9 @@ struct StressRun {
   bool interrupted = false;
 };
 
-// "fail": a rate failed; "pass": every rate passed; "none": no rate passed, because none could be
-// judged; "partial": some rates passed, and the others could not be judged, or the run was
-// interrupted.
-std::string_view verdict_of(const StressRun& run);
+// fail: a rate failed; pass: every rate passed; none: no rate passed, because none could be judged;
+// partial: some rates passed, and the others could not be judged, or the run was interrupted.
+Conclusion conclusion_of(const StressRun& run);
 // The rates whose result is neither a pass nor a failure: "1000".
 std::vector<std::string> rates_not_judged(const StressRun& run);
 

@@ -41,12 +41,12 @@ std::vector<std::string> rates_not_judged(const StressRun& run) {
   return rates;
 }
 
-std::string_view verdict_of(const StressRun& run) {
+Conclusion conclusion_of(const StressRun& run) {
   const RunResult all = run_of(run);
-  if (all.failed()) return "fail";
-  if (all.count(Verdict::pass) == 0) return "none";
+  if (all.failed()) return Conclusion::fail;
+  if (all.count(Verdict::pass) == 0) return Conclusion::none;
   const bool complete = all.count(Verdict::pass) == all.results.size() && !run.interrupted;
-  return complete ? "pass" : "partial";
+  return complete ? Conclusion::pass : Conclusion::partial;
 }
 
 std::string note_on_cost(const StressRun& run) {
@@ -104,7 +104,7 @@ std::string stress_json(const StressRun& run) {
                                 {"policy", run.live.fifo ? "fifo" : "other"},
                                 {"spin_ns", run.live.wait.spin.count()},
                                 {"interrupted", run.interrupted},
-                                {"verdict", verdict_of(run)},
+                                {"verdict", name_of(conclusion_of(run))},
                                 {"rates_not_judged", rates_not_judged(run)},
                                 {"results", nlohmann::json::array()}};
   for (const StressResult& stress : run.results) {

@@ -66,7 +66,8 @@ DocumentTable metrics_table(const SweepSummary& summary) {
 }
 
 Cell difference_cell(double p_value, bool differs) {
-  if (differs) return {fmt::format("{:.2g}, differs", p_value), Verdict::fail};
+  if (differs)
+    return {fmt::format("{:.2g}, {}", p_value, name_of(RowVerdict::differs)), Verdict::fail};
   return fmt::format("{:.2g}", p_value);
 }
 
@@ -226,8 +227,7 @@ DocumentHead head_of(const SweepRun& run) {
                            decided(run.summary, RequirementDecision::undecided));
   }
   if (run.summary.port) sentence += difference_text(*run.summary.port);
-  return {passes ? Verdict::pass : Verdict::fail, passes ? "pass" : "fail", title_of(run),
-          std::move(sentence)};
+  return {passes ? Conclusion::pass : Conclusion::fail, title_of(run), std::move(sentence)};
 }
 
 // Notes on the plots and on what is left out are on the page only.
@@ -281,7 +281,11 @@ std::vector<Fact> facts_of(const SweepRun& run) {
 }  // namespace
 
 Document sweep_document(const SweepRun& run) {
-  SweepPlots plots = sweep_plots(run.sampler.sweep(), run.columns, run.data, run.summary);
+  UnitsOfMetrics units;
+  for (const Metric& metric : run.sampler.nominal().the_case.flight->metrics) {
+    units[metric.name] = unit_of(metric.measure);
+  }
+  SweepPlots plots = sweep_plots(run.sampler.sweep(), run.columns, run.data, run.summary, units);
   Document document{head_of(run), notes_of(run, plots)};
   document.facts = facts_of(run);
   document.tables = tables_of(run);

@@ -292,8 +292,9 @@ std::string failed_cases(const RunResult& run) {
 }
 
 std::string verdict_line(const RunResult& run, double wall_s, TerminalStyle style) {
-  const Verdict conclusion = conclusion_of(run);
-  return fmt::format("{} {}\n", painted(outcome_of(conclusion), colour_of(conclusion), style),
+  const Conclusion conclusion = conclusion_of(run);
+  const Colour colour = colour_of(verdict_of(conclusion));
+  return fmt::format("{} {}\n", painted(capitals(name_of(conclusion)), colour, style),
                      conclusion_text(run, fmt::format(" in {:.1f} s", wall_s)));
 }
 

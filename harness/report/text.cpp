@@ -1,6 +1,7 @@
 #include "harness/report/text.hpp"
 
 #include <algorithm>
+#include <cctype>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -79,6 +80,13 @@ std::string broken_at(int width, std::string_view text) {
   std::vector<std::string> lines = lines_of(text);
   for (std::string& line : lines) line = broken_line(static_cast<std::size_t>(width), line);
   return fmt::format("{}{}", fmt::join(lines, "\n"), text.ends_with('\n') ? "\n" : "");
+}
+
+std::string capitals(std::string_view word) {
+  std::string out(word);
+  for (char& letter : out)
+    letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  return out;
 }
 
 std::string one_line(std::string_view text) {

@@ -28,6 +28,8 @@ std::vector<std::string> lines_of(std::string_view text);
 std::string shell_word(std::string_view text);
 std::string shell_quoted(std::string_view text);
 
+std::string capitals(std::string_view word);  // "PASS"
+
 // "1 case", "2 cases".
 std::string counted(std::size_t count, std::string_view noun);
 

@@ -227,10 +227,9 @@ DocumentHead head_of(const TimeRun& run, bool any_fails) {
     const double slowest_us = Shown(run.counter).in_ns(steps.max()).value_or(0) / 1000;
     sentence += fmt::format("; the slowest takes {:.3g}% of it", 100 * slowest_us / *run.budget_us);
   }
-  return {failed ? Verdict::fail : Verdict::pass,
-          failed       ? "fail"
-          : has_budget ? "pass"
-                       : "measured",
+  return {failed       ? Conclusion::fail
+          : has_budget ? Conclusion::pass
+                       : Conclusion::measured,
           fmt::format("Step {}s of {}", Shown(run.counter).what(), run.port), std::move(sentence)};
 }
 

@@ -1,4 +1,5 @@
-// The verdict on one vector: a case in one run configuration.
+// The verdict on one vector: a case in one run configuration. And all words with which reports
+// judge: docs/verdicts.md explains them, and a test compares it with the tables of verdict.cpp.
 #pragma once
 
 #include <optional>
@@ -34,10 +35,29 @@ inline constexpr int verdict_count = 10;
 inline constexpr std::string_view exact_level_only =
     "on a threshold of the law: compared at the exact level only";
 
-std::string_view name_of(Verdict verdict);  // "non-finite"
+std::string_view name_of(Verdict verdict);     // "non-finite"
+std::string_view meaning_of(Verdict verdict);  // for a result without a reason
 std::optional<Verdict> parse_verdict(std::string_view name);
 bool fails_a_run(Verdict verdict);
 bool is_judged(Verdict verdict);  // all but skip and unsupported
+
+// The judgement on a run, or on what else a command examined.
+enum class Conclusion {
+  pass,
+  fail,
+  partial,   // some rates passed, and the others were not judged
+  none,      // no vector passed, and none failed
+  measured,  // the command had no bound to judge by
+};
+inline constexpr int conclusion_count = 5;
+std::string_view name_of(Conclusion conclusion);
+Verdict verdict_of(Conclusion conclusion);  // the verdict with the same colour and symbol
+Conclusion conclusion_of(Verdict verdict);  // pass, fail or none
+
+// The judgement on one signal, topic or metric in a table.
+enum class RowVerdict { agrees, differs, within, missed, not_judged };
+inline constexpr int row_verdict_count = 5;
+std::string_view name_of(RowVerdict verdict);
 
 struct MetricResult {
   std::string name;  // its key in the case

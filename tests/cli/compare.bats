@@ -4,7 +4,7 @@ load common
   trace="$SOURCE"/golden/recorded/px4-v1.5.5/tracking_100hz.csv
   run "$ATTEST" compare "$trace" "$trace" --level exact
   [ "$status" -eq 0 ]
-  has "agree: 300 ticks"
+  has "PASS 300 ticks"
 }
 
 @test "a changed value is found: tick, channel, bits" {
@@ -64,7 +64,7 @@ load common
   "$ATTEST" sim gust --rate 250 --port fault:quat-order-xyzw --out b.ulg || true
   run "$ATTEST" compare b.ulg a.csv
   [ "$status" -eq 1 ]
-  has "differ: b.ulg (got), a.csv (want)"
+  has "FAIL b.ulg (got), a.csv (want)"
   has "vehicle_rates_setpoint.yaw: "
 }
 

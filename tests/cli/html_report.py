@@ -253,7 +253,7 @@ class PassingPort(Page):
     options = ["--port", "builtin", "--group", "tpa"]
 
     def test_it_is_quiet_about_failures(self):
-        self.assertIn("PASS", self.run_in_page("document.querySelector('header').textContent"))
+        self.assertIn("pass", self.run_in_page("document.querySelector('header').textContent"))
         self.assertEqual(self.run_in_page("document.querySelectorAll('.v-fail').length"), 0)
         self.assertEqual(self.run_in_page("document.querySelector('.details').textContent"), "")
         self.assertGreater(self.run_in_page("document.querySelectorAll('.row').length"), 3)

@@ -43,7 +43,7 @@ load common
   has "of a port's process: 10 s per answer"
   [ "$status" -eq 0 ]
   has "agrees with 81 of 81 traces recorded from the firmware"
-  lacks "BAD"
+  lacks "FAIL"
   has "px4-v1.3.4/flight, px4-v1.3.4/flight_timing, px4-v1.3.4/instances, px4-v1.3.4/rate_law"
   lacks "px4-v1.3.4/tpa"
   lacks "px4-v1.5.5/battery_status"
@@ -71,7 +71,7 @@ SCRIPT
   damaged 'math.atan(9 / 16)'
   run ./damaged --suite suite doctor
   [ "$status" -eq 2 ]
-  has "BAD    functions  atan2: not correctly rounded, so no verdict of this attest is valid"
+  has "FAIL   functions  atan2: not correctly rounded, so no verdict of this attest is valid"
 }
 
 # The port does not depend on the suite, and doctor examines a small one sooner.
@@ -83,8 +83,8 @@ SCRIPT
   has "100 of px4-v1.3.4"
   for port in crash exits throws step_fails; do
     run "$ATTEST" --suite suite doctor --port "lib:$PORTS/port_$port.so"
-    [ "$status" -eq 2 ]
-    grep -q '^BAD    steps .*100 of px4-v1.5.5: ' <<<"$output"
+    [ "$status" -eq 1 ]
+    grep -q '^FAIL   steps .*100 of px4-v1.5.5: ' <<<"$output"
   done
 }
 
@@ -92,7 +92,7 @@ SCRIPT
   make_suite
   run "$ATTEST" --suite suite doctor --port "lib:$PORTS/port_wrong_abi.so"
   [ "$status" -eq 2 ]
-  has "BAD"
+  has "FAIL"
   has "ABI version is 99"
   run "$ATTEST" --suite suite doctor
   [ "$status" -eq 2 ]

@@ -39,7 +39,7 @@ in_python="$SOURCE/controller/starters/python_law"
   [ "${BASH_REMATCH[1]}" -ge 39 ]
   run "$ATTEST" smoke --port "proc:$PYTHON $in_python/port.py"
   [ "$status" -eq 0 ]
-  lacks BAD
+  lacks FAIL
 }
 
 @test "the starter in Octave has them to the bit, too" {
@@ -51,7 +51,7 @@ in_python="$SOURCE/controller/starters/python_law"
   [ "${BASH_REMATCH[1]}" -ge 39 ]
   run "$ATTEST" smoke --port "$port"
   [ "$status" -eq 0 ]
-  lacks BAD
+  lacks FAIL
 }
 
 @test "a mistake in the starter in Octave is found" {

@@ -24,8 +24,8 @@ refused() {
 @test "the starter in Python conforms, and keeps the rules of the exchange" {
   run "$ATTEST" smoke --port "$(starter)"
   [ "$status" -eq 0 ]
-  lacks BAD
-  [ "$(grep -c '^ok' <<<"$output")" -eq 13 ]
+  lacks FAIL
+  [ "$(grep -c '^pass' <<<"$output")" -eq 13 ]
   run "$ATTEST" run --port "$(starter)" --rate 250 --group attitude --group rates \
     --group tailsitter --group instances
   [ "$status" -eq 0 ]
@@ -178,7 +178,7 @@ starts_of() {
   has "protocol: the answer to the request \`create\` has the result 3"
   run "$ATTEST" smoke --port "$(program "program.py exits_in_destroy")"
   [ "$status" -eq 1 ]
-  has "BAD"
+  has "FAIL"
 }
 
 @test "a program that does not answer is a timeout, and nothing of it is left" {

@@ -452,11 +452,11 @@ PATHS
   [ "$status" -eq 2 ]
   printf '#!/bin/sh\nexit 3\n' >program
   run "$ATTEST" smoke program
-  [ "$status" -eq 1 ]
+  [ "$status" -eq 2 ]
   has "neither a shared library nor an executable file"
   chmod +x program
   run "$ATTEST" smoke ./program
-  [ "$status" -eq 1 ]
+  [ "$status" -eq 2 ]
   has "proc:./program"
   run "$ATTEST" run --filter attitude
   [ "$status" -eq 2 ]

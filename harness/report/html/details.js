@@ -41,8 +41,8 @@
     if (row.signal) {
       add('first deviation', `tick ${row.tick}, timestamp ${row.time} us`);
       add('signal', element('strong', {className: 'value'}, row.signal));
-      add('port', element('span', {className: 'value'}, row.got));
-      add('expected', element('span', {className: 'value'}, row.want));
+      add('got', element('span', {className: 'value'}, row.got));
+      add('want', element('span', {className: 'value'}, row.want));
       if (row.distance) add('difference', row.distance);
       add(
         'stage',

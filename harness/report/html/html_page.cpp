@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -120,9 +121,9 @@ void add_files(bool is_of_run, Values& page) {
 }
 
 void add_head(const DocumentHead& head, Values& page) {
-  set_text(page, "outcome", outcome_of(head.verdict));
+  set_text(page, "outcome", name_of(conclusion_of(head.verdict)));
   set_text(page, "conclusion_symbol", symbol_of(head.verdict));
-  set_text(page, "word", one_line(head.word));
+  set_text(page, "word", head.word);
   set_text(page, "title", one_line(head.title));
   set_text(page, "sentence", one_line(head.sentence));
 }
@@ -143,6 +144,15 @@ Values cell_to_data(const Cell& cell, bool numeric) {
 }
 
 Values line_to_data(const Cell& line) { return cell_to_data(line, false); }
+
+// Keeps the spaces that indent and align the line.
+Values line_below_to_data(const Cell& line) {
+  Values out = line_to_data(line);
+  std::string text = printable(line.text);
+  std::ranges::replace(text, '\n', ' ');
+  set_text(out, "text", text);
+  return out;
+}
 
 Values table_to_data(const DocumentTable& table) {
   std::vector<bool> numeric;
@@ -165,7 +175,8 @@ Values table_to_data(const DocumentTable& table) {
   set_text(out, "id", table.id);
   out.set("header", header);
   out.set("rows", rows);
-  out.set("below", list_of(table.below, line_to_data));
+  out.set("has_columns", !table.header.empty());
+  out.set("below", list_of(table.below, line_below_to_data));
   return out;
 }
 

@@ -122,9 +122,8 @@ std::vector<Cell> row_of(const VectorResult& result, const RunResult& run) {
 // The page, with an empty element for the plots.
 Document run_document(const Report& report) {
   const RunResult& run = report.run;
-  const Verdict conclusion = conclusion_of(run);
-  Document document{{conclusion, std::string(outcome_of(conclusion)),
-                     fmt::format("{} {}", run.port_name, run.port_version), conclusion_text(run)}};
+  Document document{{conclusion_of(run), fmt::format("{} {}", run.port_name, run.port_version),
+                     conclusion_text(run)}};
   if (std::string lacks = needless_lacks_text(run); !lacks.empty()) {
     document.notes.push_back({std::move(lacks), false});
   }

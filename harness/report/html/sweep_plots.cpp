@@ -141,18 +141,26 @@ Plot difference_of(const SampleColumns& columns, const SampleData& data, std::si
   return plot;
 }
 
+std::string unit_of(const std::string& metric, const UnitsOfMetrics& units) {
+  const auto found = units.find(metric);
+  return found == units.end() ? "" : found->second;
+}
+
 // Each plot is a group of its own, because each plot has another quantity on the x axis.
 void add_distributions(const SweepFile& sweep, const SampleColumns& columns, const SampleData& data,
-                       std::vector<PlotGroup>& groups) {
+                       const UnitsOfMetrics& units, std::vector<PlotGroup>& groups) {
   const std::size_t first = groups.size();
   for (std::size_t metric = 0; metric < columns.metrics.size(); ++metric) {
     Plot plot = distribution_of(sweep, columns, data, metric);
     if (plot.series.empty()) continue;
-    groups.push_back({"", columns.metrics[metric], {std::move(plot)}});
+    const std::string& name = columns.metrics[metric];
+    const std::string unit = unit_of(name, units);
+    const std::string label = unit.empty() ? name : fmt::format("{} [{}]", name, unit);
+    groups.push_back({"", label, {std::move(plot)}});
     if (!columns.with_port) continue;
     Plot difference = difference_of(columns, data, metric);
     if (difference.series.empty()) continue;
-    groups.push_back({"", "difference of " + columns.metrics[metric], {std::move(difference)}});
+    groups.push_back({"", "difference of " + label, {std::move(difference)}});
   }
   if (groups.size() > first) groups[first].title = "Distributions";
 }
@@ -225,7 +233,7 @@ void add_band(const std::string& metric, const SweepFile& sweep, Plot& plot) {
 // Both series have the same x. With different x, plots.js would merge samples with equal x.
 Plot scatter_of(const Pair& pair, const SweepFile& sweep, const SampleColumns& columns,
                 const SampleData& data, const std::set<std::uint64_t>& drawn,
-                const std::set<std::uint64_t>& worst) {
+                const std::set<std::uint64_t>& worst, const UnitsOfMetrics& units) {
   const std::vector<double>& numbers = data.drawn[pair.dispersion];
   const std::vector<double>& values = data.pilots.back().metrics[pair.metric];
   std::vector<std::uint64_t> order(drawn.begin(), drawn.end());
@@ -241,8 +249,9 @@ Plot scatter_of(const Pair& pair, const SweepFile& sweep, const SampleColumns& c
     marked.y.push_back(is_worst ? value : not_drawn);
   }
   marked.x = flights.x;
-  Plot plot{fmt::format("{} over {}", columns.metrics[pair.metric],
-                        columns.dispersions[pair.dispersion])};
+  Plot plot{
+      fmt::format("{} over {}", columns.metrics[pair.metric], columns.dispersions[pair.dispersion]),
+      unit_of(columns.metrics[pair.metric], units)};
   plot.shape = PlotShape::scatter;
   plot.series.push_back(std::move(flights));
   if (!worst.empty()) plot.series.push_back(std::move(marked));
@@ -253,9 +262,10 @@ Plot scatter_of(const Pair& pair, const SweepFile& sweep, const SampleColumns& c
 }  // namespace
 
 SweepPlots sweep_plots(const SweepFile& sweep, const SampleColumns& columns,
-                       const SampleData& samples, const SweepSummary& summary) {
+                       const SampleData& samples, const SweepSummary& summary,
+                       const UnitsOfMetrics& units) {
   SweepPlots plots;
-  add_distributions(sweep, columns, samples, plots.groups);
+  add_distributions(sweep, columns, samples, units, plots.groups);
   const std::vector<Pair> pairs = pairs_of(sweep, summary);
   plots.scatter_plots = pairs.size();
   const std::set<std::uint64_t> worst = worst_of(summary);
@@ -267,7 +277,8 @@ SweepPlots sweep_plots(const SweepFile& sweep, const SampleColumns& columns,
       plots.groups.push_back({last == nullptr ? "Metrics over dispersions" : "", name, {}});
     }
     last = &name;
-    plots.groups.back().plots.push_back(scatter_of(pair, sweep, columns, samples, drawn, worst));
+    plots.groups.back().plots.push_back(
+        scatter_of(pair, sweep, columns, samples, drawn, worst, units));
   }
   return plots;
 }

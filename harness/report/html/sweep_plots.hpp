@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "harness/report/document.hpp"
@@ -24,9 +26,11 @@ struct SweepPlots {
   std::size_t scatter_plots = 0;  // number of pairs; at most most_scatter_plots are drawn
 };
 
+using UnitsOfMetrics = std::map<std::string, std::string>;  // by the names of the metrics
+
 // For each metric its cumulative distribution and, with a port, that of the difference between port
 // and reference; then metrics over dispersions.
 SweepPlots sweep_plots(const SweepFile& sweep, const SampleColumns& columns, const SampleData& data,
-                       const SweepSummary& summary);
+                       const SweepSummary& summary, const UnitsOfMetrics& units = {});
 
 }  // namespace attest

@@ -69,9 +69,9 @@
     ]);
     return new Dygraph(place, rows, {
       ...commonOptions(curves, marked),
-      labels: ['time', 'expected', 'port'],
+      labels: ['time', 'want', 'got'],
       colors: [colour('expected'), colour('got')],
-      series: {expected: {strokeWidth: 3}, port: {strokeWidth: 1.5, strokePattern: [6, 3]}},
+      series: {want: {strokeWidth: 3}, got: {strokeWidth: 1.5, strokePattern: [6, 3]}},
     });
   };
 
@@ -85,7 +85,7 @@
       labels: ['time', 'allowed', 'difference'],
       colors: [colour('allowed'), colour('got')],
       series: {allowed: {strokeWidth: 1}, difference: {strokeWidth: 1.5}},
-      xlabel: 'difference between port and expected value, over time from the first tick [s]',
+      xlabel: 'difference (got - want), over time from the first tick [s]',
       xLabelHeight: 16,
     });
   };
@@ -96,15 +96,15 @@
   // The values at the cursor, in place of the legend of dygraphs.
   const reading = (curves, i) => {
     if (i < 0) {
-      const parts = [key('want', 'expected'), '\u2003'];
+      const parts = [key('want', 'want'), '\u2003'];
       if (curves.allowed) parts.push(key('allowed', 'tolerance'), '\u2003');
-      return [...parts, key('got', 'port')];
+      return [...parts, key('got', 'got')];
     }
     const parts = [
       `tick ${curves.tick[i]}, ${shown(curves.time[i])} s\u2003`,
-      key('want', `expected ${shown(curves.want[i])}`),
+      key('want', `want ${shown(curves.want[i])}`),
       '\u2003',
-      key('got', `port ${shown(curves.got[i])}`),
+      key('got', `got ${shown(curves.got[i])}`),
       '\u2003',
       `difference ${shown(curves.got[i] - curves.want[i])}`,
     ];
@@ -120,12 +120,12 @@
     const values = element('div', {
       className: 'values',
       role: 'img',
-      'aria-label': `${signal.name}: the port's values and the expected ones over time`,
+      'aria-label': `${signal.name}: got and want over time`,
     });
     const deviation = element('div', {
       className: 'deviation',
       role: 'img',
-      'aria-label': `${signal.name}: difference between port and expected value over time`,
+      'aria-label': `${signal.name}: difference (got - want) over time`,
     });
     const count =
       signal.deviating > 0

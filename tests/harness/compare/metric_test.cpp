@@ -47,6 +47,14 @@ TEST(Measure, IsReadBackFromItsName) {
   EXPECT_THAT(unknown.error().message, HasSubstr("sink_m"));
 }
 
+TEST(Measure, HasTheUnitOfItsName) {
+  EXPECT_EQ(unit_of(Measure::settling_time_s), "s");
+  EXPECT_EQ(unit_of(Measure::overshoot_deg), "deg");
+  EXPECT_EQ(unit_of(Measure::peak_rate_rad_s), "rad/s");
+  EXPECT_EQ(unit_of(Measure::sink_m), "m");
+  EXPECT_EQ(unit_of(Measure::peak_integral), "");
+}
+
 TEST(SettlingTime, IsOfTheLastArrivalInTheBand) {
   Metric settles = metric(Measure::settling_time_s);
   EXPECT_NEAR(measured(settles, rolled_by({30, 1, 3, 1.9, 1, 0})), 0.012, 1e-12);

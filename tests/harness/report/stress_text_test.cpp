@@ -79,21 +79,21 @@ TEST(StressText, NamesARhythmOnlyWhereOneWasFound) {
 
 TEST(StressText, ARateThatIsNotJudgedIsNoPassOfTheWhole) {
   StressRun run = mixed_run();
-  EXPECT_EQ(verdict_of(run), "fail");
+  EXPECT_EQ(conclusion_of(run), Conclusion::fail);
   EXPECT_THAT(rates_not_judged(run), ElementsAre("1000"));
   run.results.erase(run.results.begin() + 1);
-  EXPECT_EQ(verdict_of(run), "partial");
+  EXPECT_EQ(conclusion_of(run), Conclusion::partial);
   EXPECT_EQ(last_line(run),
             "PARTIAL 1 of 2 rates hold in real time (load: none); not judged: 1000 Hz");
   run.results.back().result.verdict = Verdict::unsupported;
-  EXPECT_EQ(verdict_of(run), "partial");
+  EXPECT_EQ(conclusion_of(run), Conclusion::partial);
   run.results.pop_back();
-  EXPECT_EQ(verdict_of(run), "pass");
+  EXPECT_EQ(conclusion_of(run), Conclusion::pass);
   EXPECT_EQ(last_line(run), "PASS 1 of 1 rate hold in real time (load: none)");
   run.interrupted = true;
-  EXPECT_EQ(verdict_of(run), "partial");
+  EXPECT_EQ(conclusion_of(run), Conclusion::partial);
   run.results.clear();
-  EXPECT_EQ(verdict_of(run), "none");
+  EXPECT_EQ(conclusion_of(run), Conclusion::none);
 }
 
 // Of the cascade: a rate has a result for each unit.
@@ -116,7 +116,7 @@ TEST(StressText, ARateOfTheCascadeHoldsIfBothUnitsDo) {
   EXPECT_EQ(last_line(run), "PASS 1 of 1 rate hold in real time (load: none)");
   run.results[1].result.verdict = Verdict::skip;
   run.results[1].result.reason = "the machine's";
-  EXPECT_EQ(verdict_of(run), "none");
+  EXPECT_EQ(conclusion_of(run), Conclusion::none);
   EXPECT_THAT(rates_not_judged(run), ElementsAre("250:1000"));
   run.results[0].result.verdict = Verdict::fail;
   run.results[0].result.reason = "9 overruns";

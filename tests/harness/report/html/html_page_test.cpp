@@ -97,7 +97,7 @@ TEST(PlotData, ABoundHasItsPlaceAndSide) {
 
 TEST(HtmlPage, TablesAlignNumbersAndMarkVerdicts) {
   Document page;
-  page.head = {Verdict::fail, "differ", "a and b", ""};
+  page.head = {Conclusion::fail, "a and b", ""};
   page.tables = {{"Signals", {"signal", "worst", "note"}, {}}};
   page.tables[0].rows = {{"roll", "-0.5", {"late", Verdict::fail}}, {"pitch", "", "5 is a text?"}};
   page.tables[0].rows.push_back({"yaw", "2", "none"});
@@ -106,13 +106,24 @@ TEST(HtmlPage, TablesAlignNumbersAndMarkVerdicts) {
   EXPECT_THAT(text, HasSubstr("<td class=\"v-fail\"><b>\u2717</b> late</td>"));
   EXPECT_THAT(text, HasSubstr("<td class=\"\">5 is a text?</td>"));
   EXPECT_THAT(text, HasSubstr("<th scope=\"row\" class=\"\">roll</th>"));
-  EXPECT_THAT(text, HasSubstr("conclusion FAIL"));
+  EXPECT_THAT(text, HasSubstr("conclusion fail"));
+}
+
+TEST(HtmlPage, ATableWithoutColumnsIsAHeadingAndLines) {
+  Document page;
+  page.head = {Conclusion::pass, "two logs"};
+  page.tables = {{"a.ulg", {}}};
+  page.tables[0].below = {"first at tick 3", "  got   1"};
+  const std::string text = html_page(page);
+  EXPECT_THAT(text, HasSubstr("<h3>a.ulg</h3>"));
+  EXPECT_THAT(text, Not(HasSubstr("<caption>a.ulg")));
+  EXPECT_THAT(text, HasSubstr("<code>  got   1</code>"));  // aligned as in the terminal
 }
 
 TEST(HtmlPage, AllTextsAreEscaped) {
   const std::string evil = "<img src=x></script>\x1b{{title}}";
   Document page;
-  page.head = {Verdict::pass, evil, evil, evil};
+  page.head = {Verdict::pass, evil, evil};
   page.notes = {{evil, true}};
   page.facts = {{evil, evil}, {"empty", ""}};
   page.tables = {{evil, {evil}, {{evil, {evil, Verdict::pass, evil}}}}};
