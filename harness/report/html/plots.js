@@ -257,6 +257,7 @@
       drawPoints: plot.shape === 'line' && !isLong,
       pointSize: 2.5,
       includeZero: (plot.shape === 'bars' || plot.shape === 'points') && !plot.logarithmic_y,
+      yRangePad: plot.marks.length > 0 ? 20 : options.yRangePad, // for the text of the first mark
       xRangePad: plot.logarithmic_x ? 0 : options.xRangePad, // the padding may reach below 0
       valueRange: valueRange(plot),
       logscale: plot.logarithmic_y,
@@ -333,6 +334,7 @@
     const draw = () => {
       drawn = new Dygraph(box, rows, {
         ...optionsOf(plot, xLabel),
+        ...(rows.length === 1 ? {dateWindow: [rows[0][0] * 0.5, rows[0][0] * 2]} : {}),
         highlightCallback: (_, x) => group.moveTo(x),
       });
       return drawn;

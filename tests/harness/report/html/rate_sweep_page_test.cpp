@@ -42,6 +42,16 @@ TEST(SweepPage, ShowsTheLimitsAndWhatIsMissed) {
   EXPECT_THAT(page, HasSubstr("\"name\":\"within bounds\""));
 }
 
+TEST(SweepPage, APlotHasTheUnitOfTheMeasureAndAtLeastOneValue) {
+  RateSweepRun run = one_vehicle();
+  const auto plots = rate_sweep_document(run).groups.front().plots;
+  ASSERT_EQ(plots.size(), 1u);  // no delay was found, so none is plotted
+  EXPECT_EQ(plots[0].title, "settles: settling_time_s");
+  EXPECT_EQ(plots[0].unit, "s");
+  run.results[0].trials = {{100, 0, {infinite}, false}};
+  EXPECT_THAT(rate_sweep_document(run).groups, testing::IsEmpty());
+}
+
 TEST(SweepPage, AFailureOfThePortIsTheConclusion) {
   RateSweepRun run = one_vehicle();
   run.results[1].result.verdict = Verdict::crash;
