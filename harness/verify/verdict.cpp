@@ -17,12 +17,12 @@ struct VerdictWord {
 
 // In the order of Verdict.
 constexpr std::array<VerdictWord, verdict_count> verdicts{{
-    {"pass", false, "agrees with the golden"},
-    {"fail", true, "differs from the golden"},
+    {"pass", false, "agrees with the reference"},
+    {"fail", true, "differs from the reference"},
     {"crash", true, "the port's process died"},
     {"timeout", true, "the port did not answer in time"},
     {"protocol", true, "the port broke the rules of the ABI"},
-    {"non-finite", true, "NaN or infinity where the golden has a number"},
+    {"non-finite", true, "NaN or infinity where the reference has a number"},
     {"unsupported", false, "the port does not do this"},
     {"skip", false, "not run"},
     {"xfail", false, "failed, as expected"},
