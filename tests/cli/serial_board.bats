@@ -38,6 +38,23 @@ results() {
   has "PASS"
 }
 
+@test "a paced line is as slow as a real one" {
+  cat >time_of.py <<'PACED'
+import os, sys, time
+sys.path.insert(0, "mine")
+import bridge
+read, write = os.pipe()
+begin = time.monotonic()
+bridge.Line(write, 9600, 0, paced=True).write(bytes(480))
+assert os.read(read, 1000) == bytes(480)
+assert time.monotonic() - begin >= 0.5
+PACED
+  "$PYTHON" time_of.py
+  PACED=1 one
+  [ "$status" -eq 0 ]
+  has "PASS 1 passed"
+}
+
 impatient() { sed -i 's/default=5,/default=2,/' mine/bridge.py; }
 
 @test "a line that is too bad is an error, not a verdict" {

@@ -28,16 +28,21 @@ class LineError(Exception):
 
 
 class Line:
-    """A serial line, and the faults that it is asked to make."""
+    """A serial line, and the faults that it is asked to make.
 
-    def __init__(self, file: int, baud: int, faults_percent: float):
+    paced: the line itself has no rate, so that bytes take the time that they take at `baud`.
+    """
+
+    def __init__(self, file: int, baud: int, faults_percent: float, paced: bool):
         self._file = file
+        self._paced = paced
         self._faults = faults_percent / 100
         self._random = random.Random(1)
         self.seconds_per_byte = 10 / baud  # with start bit and stop bit
 
     def write(self, data: bytes) -> None:
         data = self._with_faults(data)
+        self._pace(data)
         while data:
             data = data[os.write(self._file, data) :]
 
@@ -51,7 +56,12 @@ class Line:
             data = b""
         if not data:
             raise LineError("the line was closed")
+        self._pace(data)
         return self._with_faults(data)
+
+    def _pace(self, data: bytes) -> None:
+        if self._paced:
+            time.sleep(len(data) * self.seconds_per_byte)
 
     def _with_faults(self, data: bytes) -> bytes:
         """Loses, repeats or changes some bytes."""
@@ -211,6 +221,9 @@ def main() -> int:
         help="lose, repeat or change this share of all bytes, as a test",
     )
     parser.add_argument(
+        "--paced", action="store_true", help="with --program: as slow as a line of that rate",
+    )
+    parser.add_argument(
         "--patience", type=float, default=5, metavar="SECONDS",
         help="how long a board may give no right answer; default: %(default)s",
     )
@@ -226,7 +239,7 @@ def main() -> int:
         file = start_program(arguments.program, arguments.baud)
     else:
         file = open_device(arguments.device, arguments.baud)
-    line = Line(file, arguments.baud, arguments.faults)
+    line = Line(file, arguments.baud, arguments.faults, arguments.paced)
     try:
         serve(Board(line, arguments.patience))
     except LineError as error:
