@@ -55,11 +55,15 @@ Result<std::vector<const Fault*>> chosen(const FaultOptions& options) {
 }
 
 // Flights catch the same faults as open loop, but take a thousand times as long.
-Result<std::vector<SelectedCase>> open_loop_cases(const SuiteFolder& suite,
-                                                  const std::string& profile) {
+Result<std::vector<SelectedCase>> cases_of(const SuiteFolder& suite, const std::string& profile) {
   Selection selection;
   selection.profiles = {profile};
-  auto cases = select_cases(suite.case_folders(), selection);
+  return select_cases(suite.case_folders(), selection);
+}
+
+Result<std::vector<SelectedCase>> open_loop_cases(const SuiteFolder& suite,
+                                                  const std::string& profile) {
+  auto cases = cases_of(suite, profile);
   if (!cases) return cases;
   std::erase_if(*cases, [](const SelectedCase& one) { return one.the_case.flight.has_value(); });
   return cases;
@@ -229,22 +233,30 @@ int faults_of_log(const FaultOptions& options, std::vector<const Fault*> faults)
   return exit_ok;
 }
 
+// "mc_att_control", or "flights".
+std::string_view what_is_in(const CoreOfModule& core) {
+  return core.flights ? "flights" : name_of(core.module);
+}
+
 // Prints the file cases/CORE: the core of each profile.
 int print_core(const FaultOptions& options, const SuiteFolder& suite,
                const std::vector<std::string>& profiles) {
   fmt::print(
       "# The core of the suite: few vectors that catch every fault that all vectors catch at the\n"
-      "# level numeric, for each module of its own. `attest faults --core` prints this file.\n");
+      "# level numeric, for each module of its own, and few flights that catch what flights do.\n"
+      "# `attest faults --core` prints this file.\n");
   const Goldens goldens(suite.golden());
+  VehicleModels vehicle_models(suite.models());
   for (const std::string& profile : profiles) {
-    const auto cases = open_loop_cases(suite, profile);
+    const auto cases = cases_of(suite, profile);
     if (!cases) return report_error(cases.error());
-    const auto cores = core_of(*cases, profile, goldens, {options.jobs, interrupted});
+    const auto cores =
+        core_of(*cases, profile, goldens, vehicle_models, {options.jobs, interrupted});
     if (interrupted()) return exit_interrupted;
     if (!cores) return report_error(cores.error());
     for (const CoreOfModule& core : *cores) {
       if (core.vectors.empty()) continue;
-      fmt::print("\n# {}, {}: {} faults, {} vectors, {} ticks\n{}\n", profile, name_of(core.module),
+      fmt::print("\n# {}, {}: {} faults, {} vectors, {} ticks\n{}\n", profile, what_is_in(core),
                  core.faults, core.vectors.size(), core.ticks, fmt::join(core.vectors, "\n"));
     }
   }

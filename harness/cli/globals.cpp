@@ -58,8 +58,17 @@ Result<std::vector<SelectedCase>> core_of_suite(const CaseFolders& folders,
                                "faults --core`",
                                *ids.begin()));
   }
-  if (!cases.empty()) return cases;
-  return fail("no selected vector is of the core; run without --core");
+  return cases;
+}
+
+// The vectors of the core in open loop, its flights, or both.
+Result<std::vector<SelectedCase>> only_asked(std::vector<SelectedCase> core, bool open_loop,
+                                             bool flights) {
+  std::erase_if(
+      core, [&](const SelectedCase& one) { return !(one.the_case.flight ? flights : open_loop); });
+  if (!core.empty()) return core;
+  return fail(fmt::format("no selected vector is of the core; run without --core{}",
+                          flights ? "-flights" : ""));
 }
 
 }  // namespace
@@ -84,6 +93,7 @@ std::string SelectionOptions::narrowing() const {
                              {"--vehicle", vehicles},
                              {"--plant", plants}});
   if (core) options.emplace_back("--core");
+  if (core_flights) options.emplace_back("--core-flights");
   if (!rerun_failed.empty()) {
     options.push_back(last_failed ? "--last-failed" : "--rerun-failed " + rerun_failed);
   }
@@ -115,10 +125,11 @@ Result<std::vector<SelectedCase>> SelectionOptions::cases_in(const CaseFolders& 
   if (!part) return tl::unexpected(part.error());
   selection.shard = *part;
   auto cases = select_cases(folders, selection);
-  if (cases && core) {
+  if (cases && (core || core_flights)) {
     SelectionOptions without_core = *this;
-    without_core.core = false;
+    without_core.core = without_core.core_flights = false;
     cases = core_of_suite(folders, *std::move(cases), without_core.selects_all());
+    if (cases) cases = only_asked(*std::move(cases), core, core_flights);
   }
   if (!cases || rerun_failed.empty()) return cases;
   return failed_in(rerun_failed, *std::move(cases));

@@ -34,19 +34,20 @@ int report_error(const Error& error);
 // Errors: those of LoopRate::parse().
 Result<std::vector<LoopRate>> parse_rates(const std::vector<std::string>& texts);
 
-// --filter, --exclude, --group, --profile, --rate, --vehicle, --plant, --core, --shard and
-// --rerun-failed, as text until they are used.
+// --filter, --exclude, --group, --profile, --rate, --vehicle, --plant, --core, --core-flights,
+// --shard and --rerun-failed, as text until they are used.
 struct SelectionOptions {
   std::vector<std::string> filters, excludes, groups, profiles, rates, vehicles, plants;
   std::string shard = "1/1";
-  bool core = false;         // only the vectors that the file CORE of the cases names
-  std::string rerun_failed;  // a JSON report: only vectors that failed in it; empty: no report
-  bool last_failed = false;  // rerun_failed is the report of the last run in this folder
+  bool core = false;          // only the vectors in open loop that the file CORE of the cases names
+  bool core_flights = false;  // only the flights that it names
+  std::string rerun_failed;   // a JSON report: only vectors that failed in it; empty: no report
+  bool last_failed = false;   // rerun_failed is the report of the last run in this folder
 
   bool selects_all() const {
     return filters.empty() && excludes.empty() && groups.empty() && profiles.empty() &&
-           rates.empty() && vehicles.empty() && plants.empty() && !core && shard == "1/1" &&
-           rerun_failed.empty();
+           rates.empty() && vehicles.empty() && plants.empty() && !core && !core_flights &&
+           shard == "1/1" && rerun_failed.empty();
   }
 
   // The given options as text, except --profile and --shard: "--group tpa --rate 250".

@@ -149,6 +149,10 @@ void add_selection(Command command, SelectionOptions& options, Selects selects) 
             "for a slow port")
       .group(option_group::selection);
   if (!with_flights) return;
+  command
+      .flag("--core-flights", options.core_flights,
+            "Only the flights of the core: few that catch what flights catch")
+      .group(option_group::selection);
   add("--vehicle", options.vehicles, "Only flights of these vehicles, separated by commas",
       "VEHICLE")
       .separated_by_commas();

@@ -46,23 +46,26 @@ struct Codec<Candidate> {
 
 namespace {
 
-// Runs the faults on one case at some of its rates.
+// Runs the faults on one case in some of its configurations. `vehicle_model`: of a flight.
 class CandidateJob final : public Job<Candidate> {
  public:
-  CandidateJob(const Case& the_case, std::vector<LoopRate> rates, const Faults& faults,
+  CandidateJob(const Case& the_case, std::vector<RunConfiguration> configurations,
+               std::shared_ptr<const VehicleModel> vehicle_model, const Faults& faults,
                const Goldens& goldens)
-      : case_(the_case), rates_(std::move(rates)), faults_(faults), goldens_(goldens) {}
+      : case_(the_case),
+        configurations_(std::move(configurations)),
+        vehicle_model_(std::move(vehicle_model)),
+        faults_(faults),
+        goldens_(goldens) {}
 
-  std::size_t size() const override { return rates_.size(); }
+  std::size_t size() const override { return configurations_.size(); }
 
   Result<Candidate> run(std::size_t task) override {
     const auto golden = goldens_.open(case_);
     if (!golden) return tl::unexpected(golden.error());
     Candidate candidate;
     for (std::size_t i = 0; i < faults_.size(); ++i) {
-      InProcessHost host(*open_fault(faults_[i]->id));
-      const auto result =
-          evaluate_case(case_, rates_[task].motor_unit, *golden, host, {Level::numeric});
+      const auto result = judged(*faults_[i], configurations_[task], *golden);
       if (!result) return tl::unexpected(result.error());
       candidate.id = result->id();
       candidate.ticks = std::max(candidate.ticks, result->ticks);
@@ -72,19 +75,39 @@ class CandidateJob final : public Job<Candidate> {
   }
 
  private:
+  Result<VectorResult> judged(const faults::Fault& fault, const RunConfiguration& configuration,
+                              const Golden& golden) const {
+    const JudgeOptions numeric{Level::numeric};
+    InProcessHost host(*open_fault(fault.id), {}, {&case_, vehicle_model_.get()});
+    if (vehicle_model_)
+      return evaluate_flight(case_, configuration, *vehicle_model_, golden, host, numeric);
+    return evaluate_case(case_, configuration.rate.motor_unit, golden, host, numeric);
+  }
+
   const Case& case_;
-  std::vector<LoopRate> rates_;
+  std::vector<RunConfiguration> configurations_;
+  std::shared_ptr<const VehicleModel> vehicle_model_;
   const Faults& faults_;
   const Goldens& goldens_;
 };
 
-// The case's rates that are 250 Hz, or the others.
-std::vector<LoopRate> rates_of(const SelectedCase& one, bool at_250_hz) {
-  std::vector<LoopRate> rates;
-  for (const RunConfiguration& configuration : one.configurations) {
-    if ((configuration.rate == Rate::hz(250)) == at_250_hz) rates.push_back(configuration.rate);
-  }
-  return rates;
+// The case's configurations at 250 Hz, or the others.
+std::vector<RunConfiguration> in_open_loop(const SelectedCase& one, bool at_250_hz) {
+  std::vector<RunConfiguration> list = one.configurations;
+  std::erase_if(list, [&](const RunConfiguration& configuration) {
+    return (configuration.rate == Rate::hz(250)) != at_250_hz;
+  });
+  return list;
+}
+
+// The flight that is the quickest of those at 250 Hz and more.
+RunConfiguration in_flight(const SelectedCase& one) {
+  return *std::ranges::min_element(
+      one.configurations, {}, [](const RunConfiguration& configuration) {
+        const PlantConfiguration& flown = *configuration.plant_configuration;
+        return std::tuple(configuration.rate < Rate::hz(250), configuration.rate,
+                          flown.plant != PlantKind::ode, flown);
+      });
 }
 
 // Moves the vectors that are needed to catch what `left` still has from `candidates` to `core`.
@@ -115,42 +138,89 @@ Faults detectable_in(const std::string& profile) {
   return list;
 }
 
+// The cases of one core.
+using Pools = std::map<std::pair<bool, Module>, std::vector<const SelectedCase*>>;
+
+Pools pools_of(const std::vector<SelectedCase>& cases) {
+  Pools pools;
+  for (const SelectedCase& one : cases) {
+    if (one.the_case.exact_only || is_long(one.the_case)) continue;
+    pools[{one.the_case.flight.has_value(), one.the_case.module}].push_back(&one);
+  }
+  return pools;
+}
+
+// Chooses the vectors of one core, in two rounds.
+class Choice {
+ public:
+  Choice(const Goldens& goldens, VehicleModels& vehicle_models, const CoreOptions& options)
+      : goldens_(goldens), vehicle_models_(vehicle_models) {
+    workers_.processes = options.processes;
+    workers_.stop = options.stop;
+  }
+
+  Result<CoreOfModule> of(const std::vector<const SelectedCase*>& pool, Faults left) const {
+    CoreOfModule core;
+    core.module = pool.front()->the_case.module;
+    core.flights = pool.front()->the_case.flight.has_value();
+    for (const bool is_first : {true, false}) {
+      auto candidates = tried(pool, is_first, left);
+      if (!candidates) return tl::unexpected(candidates.error());
+      std::set<std::size_t> indices;
+      for (std::size_t i = 0; i < left.size(); ++i) indices.insert(i);
+      cover(*std::move(candidates), indices, core);
+      Faults still_left;
+      for (const std::size_t i : indices) still_left.push_back(left[i]);
+      left = std::move(still_left);
+    }
+    std::ranges::sort(core.vectors);
+    return core;
+  }
+
+ private:
+  // The candidates of a round with what they catch.
+  Result<std::vector<Candidate>> tried(const std::vector<const SelectedCase*>& pool, bool is_first,
+                                       const Faults& faults) const {
+    Jobs<Candidate> jobs;
+    for (const SelectedCase* one : pool) {
+      std::shared_ptr<const VehicleModel> vehicle_model;
+      std::vector<RunConfiguration> configurations;
+      if (!one->the_case.flight) {
+        configurations = in_open_loop(*one, is_first);
+      } else if (is_first) {
+        configurations = {in_flight(*one)};
+        const auto& vehicle = configurations.front().plant_configuration->vehicle;
+        auto loaded = vehicle_models_.get(vehicle);
+        if (!loaded) return tl::unexpected(loaded.error());
+        vehicle_model = *std::move(loaded);
+      }
+      jobs.push_back(std::make_unique<CandidateJob>(one->the_case, std::move(configurations),
+                                                    std::move(vehicle_model), faults, goldens_));
+    }
+    JobResults<Candidate> found = run_jobs(jobs, workers_);
+    if (!found.errors.empty()) return tl::unexpected(found.errors.front());
+    return std::move(found.results);
+  }
+
+  const Goldens& goldens_;
+  VehicleModels& vehicle_models_;
+  JobOptions<Candidate> workers_;
+};
+
 }  // namespace
 
 Result<std::vector<CoreOfModule>> core_of(const std::vector<SelectedCase>& cases,
                                           const std::string& profile, const Goldens& goldens,
+                                          VehicleModels& vehicle_models,
                                           const CoreOptions& options) {
-  JobOptions<Candidate> workers;
-  workers.processes = options.processes;
-  workers.stop = options.stop;
   goldens.origins_of(profile);  // read here, so that the workers have them
   const Faults all = detectable_in(profile);
-  std::map<Module, std::vector<const SelectedCase*>> by_module;
-  for (const SelectedCase& one : cases) {
-    if (one.the_case.exact_only || is_long(one.the_case)) continue;
-    by_module[one.the_case.module].push_back(&one);
-  }
+  const Choice choice(goldens, vehicle_models, options);
   std::vector<CoreOfModule> cores;
-  for (const auto& [module, of_module] : by_module) {
-    CoreOfModule core{module, {}, 0, 0};
-    Faults left_faults = all;
-    for (const bool at_250_hz : {true, false}) {
-      Jobs<Candidate> jobs;
-      for (const SelectedCase* one : of_module) {
-        jobs.push_back(std::make_unique<CandidateJob>(one->the_case, rates_of(*one, at_250_hz),
-                                                      left_faults, goldens));
-      }
-      JobResults<Candidate> found = run_jobs(jobs, workers);
-      if (!found.errors.empty()) return tl::unexpected(found.errors.front());
-      std::set<std::size_t> left;
-      for (std::size_t i = 0; i < left_faults.size(); ++i) left.insert(i);
-      cover(std::move(found.results), left, core);
-      Faults still_left;
-      for (const std::size_t i : left) still_left.push_back(left_faults[i]);
-      left_faults = std::move(still_left);
-    }
-    std::ranges::sort(core.vectors);
-    cores.push_back(std::move(core));
+  for (const auto& [_, pool] : pools_of(cases)) {
+    auto core = choice.of(pool, all);
+    if (!core) return tl::unexpected(core.error());
+    cores.push_back(*std::move(core));
   }
   return cores;
 }
