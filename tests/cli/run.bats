@@ -159,7 +159,7 @@ quick=(--group battery --group rates --rate 100,250,8000)
 
 # The port hangs in a step, while it is loaded, or in create().
 @test "a run that is interrupted reports the vectors that were run" {
-  "$ATTEST" run --json r.json >out 2>err &
+  "$ATTEST" run --port "lib:$STARTER" --json r.json >out 2>err &
   pid=$!
   sleep 5
   kill -INT "$pid"
@@ -171,6 +171,7 @@ quick=(--group battery --group rates --rate 100,250,8000)
   "$PYTHON" - <<'CHECK'
 import json
 report = json.load(open("r.json"))
+assert not report["errors"], report["errors"]
 assert report["stopped_early"] and 0 < len(report["results"]) < 12000, len(report["results"])
 CHECK
 }
