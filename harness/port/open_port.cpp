@@ -59,6 +59,13 @@ Result<std::unique_ptr<Port>> refuse_unknown(const std::string& specification) {
                     "{}",
                     specification, names_of_port_kinds(true)));
   }
+  const std::filesystem::path path = specification;
+  if (path.has_extension() || path.has_parent_path()) {
+    const bool is_folder = std::filesystem::is_directory(path, unreadable);
+    return fail(fmt::format("{}: {}; a port is a file or one of {}", specification,
+                            is_folder ? "is a folder, not a port" : "no such file",
+                            names_of_port_kinds(true)));
+  }
   return fail(
       fmt::format("unknown port `{}`; use one of {}", specification, names_of_port_kinds(true)));
 }

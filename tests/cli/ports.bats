@@ -229,6 +229,13 @@ TASKS
   run "$ATTEST" run --port rust
   [ "$status" -eq 2 ]
   has 'unknown port `rust`'
+  run "$ATTEST" run ./rust.so
+  [ "$status" -eq 2 ]
+  has "./rust.so: no such file; a port is a file or one of \`builtin\`"
+  mkdir rust.so
+  run "$ATTEST" run ./rust.so
+  [ "$status" -eq 2 ]
+  has "./rust.so: is a folder, not a port"
 }
 
 @test "the C starter conforms to the bit" {

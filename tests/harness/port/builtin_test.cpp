@@ -59,7 +59,7 @@ TEST(Builtin, UnitsAreIndependent) {
 }
 
 TEST(OpenPort, NamesTheKindsThereAre) {
-  for (const char* specification : {"", "bultin", "libmine.so", "LIB:x", "prog:x"}) {
+  for (const char* specification : {"", "bultin", "libmine", "LIB:x", "prog:x"}) {
     const auto port = open_port(specification);
     ASSERT_FALSE(port) << specification;
     EXPECT_THAT(port.error().message,
