@@ -61,12 +61,14 @@ std::string counted_apart(const RunResult& run) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::string suspect_text(const Suspect& suspect) {
+// `in_part`: some failing vectors have deviations that no suspect explains.
+std::string suspect_text(const Suspect& suspect, bool in_part) {
   const faults::Fault& fault = *suspect.fault;
   std::string out = fmt::format(
       "  `{}`: {} ({}; in the stage {})\n"
-      "      gives the port's values in {} of {}\n",
-      fault.id, fault.what, fault.kind, name_of(fault.stage), suspect.explained,
+      "      gives {} in {} of {}\n",
+      fault.id, fault.what, fault.kind, name_of(fault.stage),
+      in_part ? "all or some of the port's values" : "the port's values", suspect.explained,
       counted(suspect.failing, "failing vector"));
   if (suspect.ambiguity_group.empty()) return out;
   std::vector<std::string> others;
@@ -84,10 +86,12 @@ std::string suspects_text(const Diagnosis& diagnosis) {
         stages_text(diagnosis.first_stages));
   }
   std::string out = "it looks like:\n";
-  for (const Suspect& suspect : diagnosis.suspects) out += suspect_text(suspect);
+  for (const Suspect& suspect : diagnosis.suspects)
+    out += suspect_text(suspect, diagnosis.unexplained > 0);
   if (diagnosis.unexplained == 0) return out;
-  return out + fmt::format("together they leave {} of {} unexplained\n", diagnosis.unexplained,
-                           counted(diagnosis.failing, "failing vector"));
+  return out + fmt::format("{} of {} have deviations that {} not explain\n", diagnosis.unexplained,
+                           counted(diagnosis.failing, "failing vector"),
+                           diagnosis.suspects.size() == 1 ? "this does" : "these do");
 }
 
 }  // namespace
