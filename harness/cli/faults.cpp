@@ -233,11 +233,6 @@ int faults_of_log(const FaultOptions& options, std::vector<const Fault*> faults)
   return exit_ok;
 }
 
-// "mc_att_control", or "flights".
-std::string_view what_is_in(const CoreOfModule& core) {
-  return core.flights ? "flights" : name_of(core.module);
-}
-
 // Prints the file cases/CORE: the core of each profile.
 int print_core(const FaultOptions& options, const SuiteFolder& suite,
                const std::vector<std::string>& profiles) {
@@ -246,18 +241,18 @@ int print_core(const FaultOptions& options, const SuiteFolder& suite,
       "# level numeric, for each module of its own, and few flights that catch what flights do.\n"
       "# `attest faults --core` prints this file.\n");
   const Goldens goldens(suite.golden());
-  VehicleModels vehicle_models(suite.models());
+  VehicleModels models(suite.models());
   for (const std::string& profile : profiles) {
     const auto cases = cases_of(suite, profile);
     if (!cases) return report_error(cases.error());
-    const auto cores =
-        core_of(*cases, profile, goldens, vehicle_models, {options.jobs, interrupted});
+    const auto cores = core_of(*cases, profile, goldens, models, {options.jobs, interrupted});
     if (interrupted()) return exit_interrupted;
     if (!cores) return report_error(cores.error());
     for (const CoreOfModule& core : *cores) {
       if (core.vectors.empty()) continue;
-      fmt::print("\n# {}, {}: {} faults, {} vectors, {} ticks\n{}\n", profile, what_is_in(core),
-                 core.faults, core.vectors.size(), core.ticks, fmt::join(core.vectors, "\n"));
+      fmt::print("\n# {}, {}: {} faults, {} vectors, {} ticks\n{}\n", profile,
+                 core.flights ? "flights" : name_of(core.module), core.faults, core.vectors.size(),
+                 core.ticks, fmt::join(core.vectors, "\n"));
     }
   }
   return exit_ok;

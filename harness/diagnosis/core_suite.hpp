@@ -10,7 +10,7 @@
 #include "controller/faults/fault.hpp"
 #include "harness/casefile/select.hpp"
 #include "harness/golden/golden.hpp"
-#include "harness/plant/vehicle_models.hpp"
+#include "harness/verify/case_job.hpp"
 
 namespace attest {
 

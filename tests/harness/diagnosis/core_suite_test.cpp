@@ -32,7 +32,8 @@ class CoreSuiteTest : public testing::Test {
 
   CoreOfModule core() const {
     const Goldens goldens(golden());
-    const auto cores = core_of(cases_, "px4-v1.5.5", goldens, {});
+    VehicleModels none("");
+    const auto cores = core_of(cases_, "px4-v1.5.5", goldens, none, {});
     EXPECT_TRUE(cores) << cores.error().to_string();
     return cores && cores->size() == 1 ? cores->front() : CoreOfModule();
   }
