@@ -92,7 +92,13 @@ function printDefinitions({ version, timestamp, information, parameters, definit
   }
 }
 
+// PX4 writes empty texts as `char[0]`, a definition that the package does not read.
+function isEmptyText(key) {
+  return key.startsWith("char[0] ");
+}
+
 function keyValue(message) {
+  if (isEmptyText(message.key)) return "";
   const view = new DataView(message.value.buffer, message.value.byteOffset, message.value.byteLength);
   return plain(parseBasicFieldValue(parseFieldDefinition(message.key), view));
 }
