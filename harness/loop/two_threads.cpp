@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdint>
 #include <ctime>
+#include <limits>
 #include <optional>
 #include <system_error>
 #include <thread>
@@ -29,20 +30,25 @@ constexpr SteadyClock::duration longest_pause = std::chrono::milliseconds(100);
 constexpr std::size_t enough_overlaps = 300;
 // A port that holds a lock during its whole step has no other overlaps.
 constexpr std::size_t most_blocked = 30;
-// A run has 20 to 130 overlaps, so 15 runs are enough but where timers do not work.
-constexpr int most_runs = 30;
+// A run has 20 to 130 overlaps and takes 30 ms. Where timers are late it has few. Both threads then
+// use less than the port's limit of CPU time.
+constexpr SteadyClock::duration longest_in_all = std::chrono::seconds(4);
 // The paused thread sleeps: if it took turns with `other`, both would wait for a CPU.
 constexpr timespec nap{0, 20'000};
 // Ignored by a process that does not handle it, so a late one does no harm.
 constexpr int pausing_signal = SIGWINCH;
+// Longer than the timer takes. If it is later, as on a busy virtual machine, the other thread sends
+// the signal.
+constexpr std::size_t most_steps_to_pause = 64;
 
 // What the handler of the signal uses.
 struct Pause {
   std::atomic<std::size_t> others_steps{0};
   std::atomic<std::size_t> lasts_until{0};  // the other has made so many steps
   std::atomic<bool> others_end{false};
-  std::atomic<bool> is_due{false};      // the timer runs
-  std::atomic<bool> is_in_step{false};  // the paused thread
+  std::atomic<bool> is_due{false};        // the timer runs
+  std::atomic<std::size_t> late_from{0};  // then the step of `judged` from which on it is late
+  std::atomic<bool> is_in_step{false};    // the paused thread
   std::atomic<std::size_t> whole{0}, blocked{0};
 };
 Pause the_pause;
@@ -88,8 +94,9 @@ class PauseTimer {
 
   // Pauses the thread in 20 to 40 us, which differ so that all parts of a step are hit. A shorter
   // time may be over before this function returns, and the pause would never be in a step.
-  void pause_soon() {
+  void pause_soon(std::size_t step) {
     if (!timer_ || the_pause.is_due || the_pause.blocked >= most_blocked) return;
+    the_pause.late_from = step + most_steps_to_pause;
     the_pause.is_due = true;
     delay_ns_ = 20'000 + (delay_ns_ + 7919) % 20'000;
     const itimerspec once{{0, 0}, {0, delay_ns_}};
@@ -128,7 +135,7 @@ bool run_on_two_threads(const std::function<bool()>& judged, const std::function
     thread.emplace([&] {
       PauseTimer timer;
       while (judged()) {
-        if (++judged_steps % between_pauses == 0) timer.pause_soon();
+        if (++judged_steps % between_pauses == 0) timer.pause_soon(judged_steps);
       }
       judged_end = true;
     });
@@ -136,6 +143,10 @@ bool run_on_two_threads(const std::function<bool()>& judged, const std::function
     return false;
   }
   while (!judged_end) {
+    if (the_pause.is_due && judged_steps >= the_pause.late_from) {
+      the_pause.late_from = std::numeric_limits<std::size_t>::max();
+      ::pthread_kill(thread->native_handle(), pausing_signal);
+    }
     if (the_pause.others_steps >= judged_steps + most_ahead &&
         the_pause.others_steps >= the_pause.lasts_until) {
       std::this_thread::yield();
@@ -165,9 +176,10 @@ std::optional<PortFault> run_until_overlapped(
     Trace& trace,
     const std::function<std::optional<PortFault>(Trace& trace, Overlaps& overlaps)>& run) {
   const Trace inputs = trace;
+  const auto end = SteadyClock::now() + longest_in_all;
   Overlaps overlaps;
   if (auto fault = run(trace, overlaps)) return fault;
-  for (int runs = 1; !overlaps.are_enough() && runs < most_runs; ++runs) {
+  while (!overlaps.are_enough() && SteadyClock::now() < end) {
     Trace again = inputs;
     if (auto fault = run(again, overlaps)) return fault;
     const auto tick = first_other_output(trace, again);

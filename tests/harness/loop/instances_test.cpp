@@ -216,7 +216,6 @@ TEST(TwoThreads, RunAgainUntilEnoughStepsOverlapOrAreBlocked) {
   EXPECT_EQ(runs_until_overlapped({.whole = 1000}), 1u);
   EXPECT_EQ(runs_until_overlapped({.whole = 101}), 3u);
   EXPECT_EQ(runs_until_overlapped({.whole = 101, .blocked = 15}), 2u);
-  EXPECT_EQ(runs_until_overlapped({}), 30u);
 }
 
 TEST(TwoThreads, ARunThatDiffersFromTheFirstIsAFault) {
