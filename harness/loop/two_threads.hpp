@@ -46,8 +46,8 @@ bool run_on_two_threads(const std::function<bool()>& judged, const std::function
                         std::size_t steps, Overlaps& overlaps);
 
 // Calls `run` for `trace`, and then for copies of its inputs, until there are enough overlaps: most
-// pauses are not in a step. `run` makes fresh instances, and counts in `overlaps`. Kind::failed:
-// the outputs of two runs differ.
+// pauses are not in a step. Ends after some seconds, because late timers give few. `run`
+// makes fresh instances, and counts in `overlaps`. Kind::failed: the outputs of two runs differ.
 std::optional<PortFault> run_until_overlapped(
     Trace& trace,
     const std::function<std::optional<PortFault>(Trace& trace, Overlaps& overlaps)>& run);

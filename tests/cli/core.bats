@@ -52,7 +52,8 @@ core_alone() {
   run "$ATTEST" run --core-flights --profile px4-v1.18 --no-diagnose
   [ "$status" -eq 0 ]
   has "only --core-flights"
-  run "$ATTEST" run --core-flights --profile px4-v1.18 --no-diagnose --port fault:cascade-pitch-yaw-gains
+  run "$ATTEST" run --core-flights --profile px4-v1.18 --no-diagnose \
+    --port fault:cascade-pitch-yaw-gains
   [ "$status" -eq 1 ]
   has "/flight/"
 }
