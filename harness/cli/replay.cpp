@@ -17,6 +17,7 @@
 #include "harness/core/file.hpp"
 #include "harness/core/interrupt.hpp"
 #include "harness/core/json_text.hpp"
+#include "harness/port/port.hpp"
 #include "harness/report/fleet_document.hpp"
 #include "harness/report/progress.hpp"
 #include "harness/report/replay_document.hpp"
@@ -155,7 +156,20 @@ class Replay {
   std::string page_;
 };
 
+// `run` takes a port without --port, so it may be given here, too. Then the built-in port would be
+// judged in its place.
+Result<void> refuse_ports(const std::vector<std::string>& files) {
+  for (const std::string& file : files) {
+    const std::string port = port_of_file(file);
+    if (kind_of(file).prefix.empty() && !port.starts_with("lib:")) continue;
+    return fail(
+        fmt::format("{} is a port, not a trace or log; give it with --port {}", file, port));
+  }
+  return {};
+}
+
 int replay_command(const ReplayOptions& options, const Globals& globals) {
+  if (auto no_port = refuse_ports(options.files); !no_port) return report_error(no_port.error());
   // The outputs in these files are what the port must compute.
   auto& hidden = globals.barrier->hidden;
   hidden.insert(hidden.end(), options.files.begin(), options.files.end());

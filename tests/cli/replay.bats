@@ -123,6 +123,15 @@ load common
   has '`one`'
 }
 
+@test "a port in the place of a trace is an error, and the built-in port is not judged" {
+  for port in "$STARTER" "lib:$STARTER"; do
+    run "$ATTEST" replay "$SOURCE"/golden/px4-v1.5.5/attitude/yaw_error.csv "$port"
+    [ "$status" -eq 2 ]
+    has "$port is a port, not a trace or log; give it with --port lib:$STARTER"
+    lacks PASS
+  done
+}
+
 @test "a missing trace is an error" {
   run "$ATTEST" replay nowhere.csv
   [ "$status" -eq 2 ]
