@@ -11,21 +11,11 @@
 
 namespace attest {
 
-// The unit whose steps shall overlap with those of the other instance. Does not own it.
-class OverlappedUnit final : public Unit {
+// The unit whose steps shall overlap with those of the other instance.
+class OverlappedUnit final : public ForwardingUnit {
  public:
-  explicit OverlappedUnit(Unit& unit) : unit_(unit) {}
-
-  int set_parameter(const std::string& name, float value) override {
-    return unit_.set_parameter(name, value);
-  }
-  int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
-    return unit_.set_timestamp_sample(timestamp_sample_us);
-  }
+  using ForwardingUnit::ForwardingUnit;
   int step_structs(const void* in, void* out) override;
-
- private:
-  Unit& unit_;
 };
 
 // The pauses of the judged thread that came in a step of the OverlappedUnit.

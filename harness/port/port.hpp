@@ -75,6 +75,23 @@ class Unit {
   virtual std::span<const StepCost> costs() const { return {}; }
 };
 
+// Passes the calls on to another unit, which outlives it. What it does in addition is in
+// step_structs(). It has no batch(), so each step is seen.
+class ForwardingUnit : public Unit {
+ public:
+  explicit ForwardingUnit(Unit& unit) : unit_(unit) {}
+
+  int set_parameter(const std::string& name, float value) override {
+    return unit_.set_parameter(name, value);
+  }
+  int set_timestamp_sample(std::uint64_t timestamp_sample_us) override {
+    return unit_.set_timestamp_sample(timestamp_sample_us);
+  }
+
+ protected:
+  Unit& unit_;
+};
+
 // A unit of the module that has these structs.
 template <typename In, typename Out>
 class UnitOf : public Unit {
