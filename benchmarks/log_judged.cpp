@@ -7,11 +7,10 @@
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
-#include "benchmarks/cpu_time.hpp"
 #include "harness/process/program.hpp"
+#include "harness/realtime/usage.hpp"
 #include "harness/ulog/reader.hpp"
 #include "harness/ulog/writer.hpp"
 #include "tests/harness/ulog/crafted.hpp"
@@ -137,9 +136,9 @@ const FlightFile& full_log() {
 template <typename Work>
 void cpu_time_per_megabyte(benchmark::State& state, const FlightFile& log, Work work) {
   for (auto _ : state) {
-    const double begin = cpu_seconds();
+    const Nanoseconds begin = cpu_time_of_all();
     work(log.path());
-    state.SetIterationTime((cpu_seconds() - begin) / log.megabytes());
+    state.SetIterationTime(in_seconds(cpu_time_of_all() - begin) / log.megabytes());
   }
 }
 

@@ -6,9 +6,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include "benchmarks/cpu_time.hpp"
 #include "harness/casefile/select.hpp"
 #include "harness/plant/vehicle_models.hpp"
+#include "harness/realtime/usage.hpp"
 #include "harness/verify/case_job.hpp"
 
 namespace attest::bench {
@@ -19,7 +19,7 @@ void suite(benchmark::State& state, int processes, bool isolated = true) {
   Selection at_one_rate;
   at_one_rate.rates = {LoopRate(Rate::hz(250))};
   for (auto _ : state) {
-    const double begin = cpu_seconds();
+    const Nanoseconds begin = cpu_time_of_all();
     const auto cases = select_cases({ATTEST_SOURCE_DIR "/cases"}, at_one_rate);
     VehicleModels vehicle_models(ATTEST_SOURCE_DIR "/models");
     HostOptions host;
@@ -30,7 +30,7 @@ void suite(benchmark::State& state, int processes, bool isolated = true) {
     JobOptions<VectorResult> options;
     options.processes = processes;
     const auto outcome = run_jobs(*jobs, options);
-    state.SetIterationTime(cpu_seconds() - begin);
+    state.SetIterationTime(in_seconds(cpu_time_of_all() - begin));
     if (!outcome.errors.empty()) state.SkipWithError(outcome.errors[0].message.c_str());
   }
 }

@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sys/resource.h>
 
 #include "harness/cli/hunt_files.hpp"
 #include "harness/cli/hunt_progress.hpp"
@@ -42,17 +41,6 @@ struct HuntCommandOptions {
 };
 
 constexpr double usual_steps = 1e6;
-
-double cpu_s(int who) {
-  rusage usage{};
-  getrusage(who, &usage);
-  const auto seconds = [](const timeval& time) {
-    return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-double all_cpu_s() { return cpu_s(RUSAGE_SELF) + cpu_s(RUSAGE_CHILDREN); }
 
 Result<ModuleSet> modules_of(const HuntCommandOptions& options) {
   ModuleSet chosen;
@@ -155,71 +143,93 @@ Result<HuntPlan> make_hunt_plan(const HuntCommandOptions& options) {
   return plan;
 }
 
-int hunt_command(const HuntCommandOptions& options, const Globals& globals) {
-  note_interrupts();
+// The files of the reports, which are opened before the hunt.
+struct HuntReportFiles {
+  AtomicFile json, junit, html;
+
+  static Result<HuntReportFiles> open(const HuntCommandOptions& options) {
+    auto json = AtomicFile::open(options.json);
+    if (!json) return tl::unexpected(json.error());
+    auto junit = AtomicFile::open(options.junit);
+    if (!junit) return tl::unexpected(junit.error());
+    auto html = AtomicFile::open(options.html);
+    if (!html) return tl::unexpected(html.error());
+    return HuntReportFiles{*std::move(json), *std::move(junit), *std::move(html)};
+  }
+
+  Result<void> commit(const HuntReport& report, const Document& document) {
+    return json.commit(hunt_json(report))
+        .and_then([&] { return junit.commit(junit_report(run_of(report))); })
+        .and_then([&] { return html.commit(html_page(document)); });
+  }
+};
+
+Result<void> check_files(const HuntCommandOptions& options, const Globals& globals) {
   const auto checked = check_outputs({options.json, options.junit, options.html},
                                      {options.host.port, options.files.logs}, globals.suite);
-  if (!checked) return report_error(checked.error());
+  if (!checked) return checked;
   for (const std::string& folder : {options.files.out, options.files.corpus}) {
     if (folder.empty()) continue;
-    if (auto own = check_own_suite(folder); !own) return report_error(own.error());
+    if (auto own = check_own_suite(folder); !own) return own;
   }
-  auto json = AtomicFile::open(options.json);
-  if (!json) return report_error(json.error());
-  auto junit = AtomicFile::open(options.junit);
-  if (!junit) return report_error(junit.error());
-  auto html = AtomicFile::open(options.html);
-  if (!html) return report_error(html.error());
-  auto plan = make_hunt_plan(options);
-  if (!plan) return report_error(plan.error());
-  HuntProgressLine line(globals.quiet);
+  return {};
+}
+
+// Hunts, and adds what was found to the report. True: was interrupted, and reports what was found.
+Result<bool> run_hunt(const HuntCommandOptions& options, bool is_quiet, HuntPlan& plan) {
+  HuntProgressLine line(is_quiet);
   const auto begin = Clock::now();
-  plan->hunt.is_over = [&] {
+  plan.hunt.is_over = [&] {
     const std::chrono::duration<double> passed = Clock::now() - begin;
     return options.seconds && passed.count() >= *options.seconds;
   };
-  plan->hunt.on_round = [&](const HuntProgress& now) { line.show(now); };
-  if (plan->corpus) {
-    plan->hunt.on_new = [&](const std::string& profile, const std::string& toml) {
-      return plan->corpus->add(profile, toml);
+  plan.hunt.on_round = [&](const HuntProgress& now) { line.show(now); };
+  if (plan.corpus) {
+    plan.hunt.on_new = [&](const std::string& profile, const std::string& toml) {
+      return plan.corpus->add(profile, toml);
     };
   }
   bool was_interrupted = false;
-  plan->hunt.on_end = [&] {
+  plan.hunt.on_end = [&] {
     line.erase();
     was_interrupted = interrupted();
     if (!was_interrupted) return;
     fmt::print(stderr, "attest: interrupted; shrinking what was found\n");
     forget_interrupt();
   };
-  auto found = hunt(plan->hunt, plan->host);
-  if (!found) return report_error(found.error());
-  if (auto same = check_port(plan->host); !same) return report_error(same.error());
-  HuntReport& report = plan->report;
-  report.found = *std::move(found);
-  if (auto written = write_findings(options.files.out, report); !written) {
-    return report_error(written.error());
-  }
-  if (plan->corpus) {
-    if (auto added = add_findings(report.found, *plan->corpus); !added)
-      return report_error(added.error());
-    report.notes.push_back(corpus_note(options.files.corpus, *plan->corpus));
-  }
+  auto found = hunt(plan.hunt, plan.host);
+  if (!found) return tl::unexpected(found.error());
+  if (auto same = check_port(plan.host); !same) return tl::unexpected(same.error());
+  plan.report.found = *std::move(found);
+  return was_interrupted;
+}
+
+Result<void> keep_findings(const HuntFiles& files, HuntPlan& plan) {
+  HuntReport& report = plan.report;
+  if (auto written = write_findings(files.out, report); !written) return written;
+  if (!plan.corpus) return {};
+  if (auto added = add_findings(report.found, *plan.corpus); !added) return added;
+  report.notes.push_back(corpus_note(files.corpus, *plan.corpus));
+  return {};
+}
+
+int hunt_command(const HuntCommandOptions& options, const Globals& globals) {
+  note_interrupts();
+  if (auto checked = check_files(options, globals); !checked) return report_error(checked.error());
+  auto files = HuntReportFiles::open(options);
+  if (!files) return report_error(files.error());
+  auto plan = make_hunt_plan(options);
+  if (!plan) return report_error(plan.error());
+  const auto was_interrupted = run_hunt(options, globals.quiet, *plan);
+  if (!was_interrupted) return report_error(was_interrupted.error());
+  if (auto kept = keep_findings(options.files, *plan); !kept) return report_error(kept.error());
+  const HuntReport& report = plan->report;
   const Document document = hunt_document(report);
-  for (const auto& written :
-       {json->commit(hunt_json(report)), junit->commit(junit_report(run_of(report))),
-        html->commit(html_page(document))}) {
-    if (!written) return report_error(written.error());
-  }
+  if (auto done = files->commit(report, document); !done) return report_error(done.error());
   const bool is_clean = report.found.findings.empty();
   if (!globals.quiet || !is_clean) fmt::print("{}", render_text(document, terminal_style(stdout)));
-  if (!globals.quiet) {
-    const double cpu = all_cpu_s();
-    fmt::print(stderr, "attest: {} steps in {:.1f} s of CPU time, {:.0f} steps/s\n",
-               report.found.progress.steps, cpu,
-               static_cast<double>(report.found.progress.steps) / std::max(cpu, 1e-3));
-  }
-  if (was_interrupted) return exit_interrupted;
+  if (!globals.quiet) print_hunt_speed(report.found.progress);
+  if (*was_interrupted) return exit_interrupted;
   return is_clean ? exit_ok : exit_failed;
 }
 

@@ -1,8 +1,11 @@
 #include "harness/cli/hunt_progress.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 #include <fmt/format.h>
+
+#include "harness/realtime/usage.hpp"
 
 namespace attest::cli {
 
@@ -27,6 +30,12 @@ void HuntProgressLine::show(const HuntProgress& now) {
 
 void HuntProgressLine::erase() const {
   if (form_ == Progress::Form::drawn) fmt::print(stderr, "\r\x1b[K");
+}
+
+void print_hunt_speed(const HuntProgress& progress) {
+  const double cpu = in_seconds(cpu_time_of_all());
+  fmt::print(stderr, "attest: {} steps in {:.1f} s of CPU time, {:.0f} steps/s\n", progress.steps,
+             cpu, static_cast<double>(progress.steps) / std::max(cpu, 1e-3));
 }
 
 }  // namespace attest::cli

@@ -1,4 +1,4 @@
-// Shows how far a hunt is.
+// Shows how far a hunt is, and how fast it was.
 #pragma once
 
 #include <chrono>
@@ -24,5 +24,9 @@ class HuntProgressLine {
   Progress::Form form_;
   Clock::time_point begin_, latest_;
 };
+
+// Prints the steps of the whole hunt on stderr, and its steps a second of CPU time of all
+// processes.
+void print_hunt_speed(const HuntProgress& progress);
 
 }  // namespace attest::cli

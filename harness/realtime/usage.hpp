@@ -1,4 +1,4 @@
-// The resources that a thread has used, as counted by the operating system.
+// The resources that a thread or this program has used, as counted by the operating system.
 #pragma once
 
 #include <cstdint>
@@ -25,5 +25,9 @@ struct Usage {
 Usage thread_usage();
 Nanoseconds thread_cpu_time();  // in steps of nanoseconds; Usage::cpu has microseconds
 std::int64_t thread_yields();   // Usage::yields alone
+
+// The CPU time of this process and of those that it started and that have ended. Other programs on
+// the machine change it less than the time that passes.
+Nanoseconds cpu_time_of_all();
 
 }  // namespace attest
