@@ -38,12 +38,6 @@ std::string replay_command(const fs::path& trace, const HuntFinding& finding,
   return command;
 }
 
-bool is_subject(const ModuleUnderTest& unit, const HuntOptions& hunt) {
-  return std::ranges::any_of(hunt.subjects, [&](const ModuleUnderTest& subject) {
-    return subject.profile == unit.profile && subject.module == unit.module;
-  });
-}
-
 }  // namespace
 
 Result<HuntCorpus> open_corpus(const std::string& root, const HuntOptions& hunt) {
@@ -68,15 +62,16 @@ Result<std::vector<HuntInputs>> inputs_of_logs(const HuntFiles& files, const std
   for (const std::string& file : files.logs) {
     auto log = read_log(file, files.assumed, profile);
     if (!log) return tl::unexpected(log.error());
-    const auto windows =
-        windows_of(*log, file, [&](const ModuleUnderTest& unit) { return is_subject(unit, hunt); });
+    const auto windows = windows_of(*log, file, [&](const ModuleUnderTest& unit) {
+      return contains(hunt.subjects, unit.profile, unit.module);
+    });
     if (!windows) return tl::unexpected(windows.error());
     print_notes(file, log->notes);
     for (const LogWindow& window : *windows) {
       std::ranges::move(trials_of_case(window.the_case, window.rate), std::back_inserter(inputs));
     }
     notes.push_back(
-        fmt::format("log {}: began with {}", file, counted(windows->size(), "part") + " of it"));
+        fmt::format("log {}: began with {} of it", file, counted(windows->size(), "part")));
   }
   return inputs;
 }

@@ -23,7 +23,7 @@ double seconds_of(const Trace& steps) {
 // The rate of the suite that is nearest to that of the steps.
 Rate rate_of(const Trace& steps) {
   const double hz = static_cast<double>(steps.samples.size() - 1) / seconds_of(steps);
-  const auto distance = [&](const Rate& rate) { return std::abs(std::log(rate.hertz() / hz)); };
+  const auto distance = [&](const Rate& rate) { return distance_of(rate, hz); };
   std::vector<Rate> rates;
   for (const int rate_hz : info_of(module_of(steps.present)).default_rates_hz) {
     rates.push_back(Rate::hz(rate_hz));

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "harness/core/result.hpp"
 
@@ -33,6 +34,10 @@ std::filesystem::path behind_links(std::filesystem::path path);
 // The path of an existing file, for messages and reports: from the current folder if the file is
 // below it, else absolute. Links are resolved.
 std::string path_from_here(const std::filesystem::path& path);
+
+// The files in the folder and in those below it, in the order of their paths. Errors: a folder
+// cannot be read.
+Result<std::vector<std::filesystem::path>> files_below(const std::filesystem::path& folder);
 
 // SHA-256 as 64 lower-case hex digits, as `sha256sum` prints it.
 std::string sha256(std::string_view bytes);

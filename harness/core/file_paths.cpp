@@ -1,4 +1,5 @@
-// The functions of file.hpp that compare and resolve paths.
+// The functions of file.hpp that find, compare and resolve paths.
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -17,6 +18,18 @@ fs::path behind_links(fs::path path) {
     target = target.parent_path() / fs::read_symlink(target, failed);
   }
   return path;
+}
+
+Result<std::vector<fs::path>> files_below(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code failed;
+  for (fs::recursive_directory_iterator it(folder, failed), end; !failed && it != end;
+       it.increment(failed)) {
+    if (!it->is_directory(failed)) files.push_back(it->path());
+  }
+  if (failed) return fail_at(folder.string(), "cannot be read: " + failed.message());
+  std::ranges::sort(files);
+  return files;
 }
 
 std::string path_from_here(const fs::path& path) {

@@ -1,6 +1,7 @@
 #include "harness/core/rate.hpp"
 
 #include <charconv>
+#include <cmath>
 #include <numeric>
 #include <optional>
 
@@ -107,6 +108,8 @@ std::string Rate::label() const {
   return denominator_ == 1 ? fmt::format("{}hz", numerator_)
                            : fmt::format("{}_{}hz", numerator_, denominator_);
 }
+
+double distance_of(const Rate& rate, double hz) { return std::abs(std::log(rate.hertz() / hz)); }
 
 const std::vector<Rate>& standard_rates() {
   static const std::vector<Rate> rates = [] {

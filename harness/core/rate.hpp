@@ -52,6 +52,10 @@ class Rate {
   std::int64_t denominator_;
 };
 
+// How far a rate is from this one [Hz]: |ln(rate / hz)|, so half the rate is as far as twice the
+// rate.
+double distance_of(const Rate& rate, double hz);
+
 // The default rates of a case, 50 Hz to 8 kHz; a case with other rates gives the reason. The
 // controller of v1.5.5 limits dt to 2..20 ms (500 Hz and 50 Hz), and several rates have a smaller
 // period. The period of 333 Hz is not a whole number of nanoseconds.

@@ -26,7 +26,7 @@ constexpr std::size_t most_failing = 240;
 // Enough to refute a fault that deviates where the port does not.
 constexpr std::size_t most_passing = 120;
 
-double distance_from_250(const Rate& rate) { return std::abs(std::log(rate.period_s() * 250)); }
+double distance_from_250(const Rate& rate) { return distance_of(rate, 250); }
 
 // One vector of each open-loop case that is not long: among its results that are `wanted`, the one
 // nearest to 250 Hz.

@@ -105,9 +105,8 @@ class Hunt {
 
 void Hunt::begin_with_cases(HuntedTarget& hunted) const {
   for (const HuntInputs& inputs : options_.first) {
-    const ModuleUnderTest& subject = hunted.target.subject;
-    const bool is_own =
-        inputs.subject.profile == subject.profile && inputs.subject.module == subject.module;
+    const bool is_own = contains(std::span(&hunted.target.subject, 1), inputs.subject.profile,
+                                 inputs.subject.module);
     if (!is_own || inputs.ticks.empty()) continue;
     hunted.first.push_back(fit_trial(hunted.target, inputs));
     hunted.kept.push_back(to_vary(hunted.first.back()));

@@ -1,7 +1,6 @@
 #include "harness/diagnosis/hunt_corpus.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <system_error>
 
@@ -17,25 +16,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// In the order of their paths, without those directly in `folder`: they are about the suite.
-Result<std::vector<fs::path>> files_below(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code failed;
-  if (!fs::exists(folder, failed)) return files;
-  for (fs::recursive_directory_iterator it(folder, failed), end; !failed && it != end;
-       it.increment(failed)) {
-    if (it.depth() > 0 && !it->is_directory()) files.push_back(it->path());
-  }
-  if (failed) return fail_at(folder.string(), "cannot be read: " + failed.message());
-  std::ranges::sort(files);
-  return files;
+// Not those directly in `folder`, which are about the suite, nor hidden files, which an editor or a
+// killed process may have left.
+bool is_of_corpus(const fs::path& file, const fs::path& folder) {
+  return file.parent_path() != folder && !file.filename().string().starts_with('.');
 }
 
 // Of a case with several rates, the one that is nearest to the usual 250 Hz.
 Rate rate_of(const Case& the_case) {
-  const auto distance = [](const LoopRate& rate) {
-    return std::abs(std::log(rate.motor_unit.hertz() / 250));
-  };
+  const auto distance = [](const LoopRate& rate) { return distance_of(rate.motor_unit, 250); };
   return std::ranges::min(the_case.rates, {}, distance).motor_unit;
 }
 
@@ -45,9 +34,12 @@ Result<HuntCorpus> HuntCorpus::open(const fs::path& folder,
                                     std::span<const ModuleUnderTest> subjects, Level level) {
   HuntCorpus corpus;
   corpus.folder_ = folder;
+  std::error_code failed;
+  if (!fs::exists(folder, failed)) return corpus;
   const auto files = files_below(folder);
   if (!files) return tl::unexpected(files.error());
   for (const fs::path& file : *files) {
+    if (!is_of_corpus(file, folder)) continue;
     if (auto read = corpus.read(file, subjects, level); !read) return tl::unexpected(read.error());
   }
   return corpus;
@@ -67,9 +59,7 @@ Result<void> HuntCorpus::read(const fs::path& file, std::span<const ModuleUnderT
                     parsed.error().to_string()));
   }
   ++cases_[{parsed->profile, parsed->module}];
-  const bool is_hunted = std::ranges::any_of(subjects, [&](const ModuleUnderTest& subject) {
-    return subject.profile == parsed->profile && subject.module == parsed->module;
-  });
+  const bool is_hunted = contains(subjects, parsed->profile, parsed->module);
   const bool is_exact = parsed->exact_only && level != Level::exact;
   if (parsed->flight || !is_hunted || is_exact) {
     ++skipped_[parsed->flight ? "a flight"

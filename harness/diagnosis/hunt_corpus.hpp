@@ -2,8 +2,8 @@
 // the reference meets something that it does not meet on the others, or a finding.
 //
 // The folder is `cases` of a suite: <profile>/hunt/<module>_<hash>.toml. The hash is that of the
-// inputs, so the same inputs are one file. It never has more than `most_of_corpus` cases of a
-// module in a profile: further ones are left out, and no file is removed.
+// inputs, so the same inputs are one file. Of a module in a profile it has at most
+// `most_of_corpus` cases. Then no case is added; a hunt removes no file.
 #pragma once
 
 #include <cstddef>

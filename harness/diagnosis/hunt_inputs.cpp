@@ -60,6 +60,13 @@ bool HuntTopic::has_same(const Sample& one, const Sample& other) const {
                      reinterpret_cast<const std::byte*>(&other) + begin, size) == 0;
 }
 
+bool contains(std::span<const ModuleUnderTest> subjects, const std::string& profile,
+              Module module) {
+  return std::ranges::any_of(subjects, [&](const ModuleUnderTest& subject) {
+    return subject.profile == profile && subject.module == module;
+  });
+}
+
 std::span<const HuntTopic> hunt_topics(Module module) {
   static const auto all = [] {
     std::array<std::vector<HuntTopic>, module_count> made;

@@ -47,6 +47,9 @@ struct HuntTopic {
 };
 
 // The topics of a module, without parameter_update. The result is valid as long as the program.
+// Whether one of the subjects is this module in this profile.
+bool contains(std::span<const ModuleUnderTest> subjects, const std::string& profile, Module module);
+
 std::span<const HuntTopic> hunt_topics(Module module);
 
 // The bit of parameter_update; 0 if the module has none.

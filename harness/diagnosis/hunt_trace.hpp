@@ -71,7 +71,7 @@ Result<Trace> whole_trace_of(const HuntInputs& inputs);
 // The inputs up to the tick that meets the last of `features`. REQUIRES: the trial meets them.
 HuntInputs begin_that_meets(const HuntFeatures& features, const HuntInputs& inputs);
 
-// "the reference came nearer to: tilt limit, yaw limit", for the reader of a case.
+// "the reference came nearer to a decision: tilt limit, yaw limit", for the reader of a case.
 std::string text_of(const HuntFeatures& features);
 
 // The index in `inputs.ticks` of a tick of the trace.

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include "harness/core/file.hpp"
 #include "harness/port/builtin.hpp"
 #include "harness/port/fault_port.hpp"
 #include "harness/port/port.hpp"
@@ -22,14 +23,14 @@ Result<std::unique_ptr<Port>> open_shared_library(const std::string& path);  // 
 
 namespace {
 
-// All files below the folder, sorted.
-std::vector<std::string> files_below(const std::string& folder) {
+std::vector<std::string> files_of_folder(const std::string& folder) {
   std::vector<std::string> files;
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, ignored)) {
-    if (entry.is_regular_file(ignored)) files.push_back(entry.path().string());
+  const auto found = files_below(folder);
+  if (!found) return files;
+  for (const std::filesystem::path& file : *found) {
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(file, ignored)) files.push_back(file.string());
   }
-  std::sort(files.begin(), files.end());
   return files;
 }
 
@@ -78,7 +79,7 @@ constexpr PortKind kinds[] = {
      open_shared_library},
     {"proc:", "COMMAND", true, files_of_program, open_program},
     {"fault:", "ID", false, nullptr, [](const std::string& ids) { return open_fault(ids); }},
-    {"recorded:", "DIR", false, files_below, nullptr},
+    {"recorded:", "DIR", false, files_of_folder, nullptr},
 };
 constexpr PortKind unknown_kind{"", "", false, nullptr, refuse_unknown};
 

@@ -18,13 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<fs::path> traces_below(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end;
-       it.increment(error)) {
-    if (it->path().extension() == ".csv") files.push_back(it->path());
-  }
-  std::sort(files.begin(), files.end());
+  auto files = files_below(folder).value_or(std::vector<fs::path>());
+  std::erase_if(files, [](const fs::path& file) { return file.extension() != ".csv"; });
   return files;
 }
 

@@ -98,7 +98,8 @@ TEST_F(HuntCorpusTest, WhatIsNotHuntedIsSkippedWithItsNumber) {
 }
 
 TEST_F(HuntCorpusTest, AFileThatIsNotACaseIsAnError) {
-  write("VERSION", "1");  // of the suite
+  write("VERSION", "1");                                 // of the suite
+  write("px4-v1.16.0/hunt/.one.toml.x1y2z3", "schema");  // left by a process that was killed
   EXPECT_TRUE(HuntCorpus::open(folder_, corpus_subjects, Level::numeric));
   const fs::path note = write("px4-v1.16.0/hunt/notes.txt", "mine");
   const auto corpus = HuntCorpus::open(folder_, corpus_subjects, Level::numeric);
