@@ -199,4 +199,15 @@ RunResult passing_run() {
   return run;
 }
 
+Flown two_level_ticks() {
+  Flown flown;
+  Trace& trace = flown.trace;
+  trace.present = channels_of(Module::mc_att_control);
+  trace.samples.resize(2);
+  trace.samples[1].in.timestamp = 4000;
+  trace.plant.resize(2);
+  for (PlantSample& sample : trace.plant) sample.q = {1, 0, 0, 0};
+  return flown;
+}
+
 }  // namespace attest

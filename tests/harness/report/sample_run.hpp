@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "harness/loop/flight.hpp"
 #include "harness/verify/run_result.hpp"
 
 namespace attest {
@@ -16,6 +17,9 @@ RunResult passing_run();
 
 // A plain pass.
 VectorResult passed(const std::string& group, const std::string& name, LoopRate rate);
+
+// A flight of a level vehicle: two ticks, 4 ms apart.
+Flown two_level_ticks();
 
 // The first value of `channel` that differs. The ulp are those of float32 where both are finite.
 Deviation deviation(const char* channel, std::size_t tick, float got, float want, double tolerance);

@@ -101,17 +101,11 @@ TEST(LinesOfBounds, AMeanARatioAndAWindowAfterTheFlightHaveNone) {
   EXPECT_THAT(lines_of_bounds(late, plot), IsEmpty());
 }
 
-// Level for two ticks, 4 ms apart, with a height of 0 and then 3 m.
+// With a height of 0 and then 3 m.
 Flown climb() {
-  Flown flown;
-  Trace& trace = flown.trace;
-  trace.present = channels_of(Module::mc_att_control);
-  trace.samples.resize(2);
-  trace.plant.resize(2);
-  trace.samples[1].in.timestamp = 4000;
-  for (PlantSample& sample : trace.plant) sample.q = {1, 0, 0, 0};
-  trace.plant[0].rate_rad_s = {3, 0, 4};
-  trace.plant[1].position_m = {0, 0, -3};
+  Flown flown = two_level_ticks();
+  flown.trace.plant[0].rate_rad_s = {3, 0, 4};
+  flown.trace.plant[1].position_m = {0, 0, -3};
   return flown;
 }
 

@@ -15,17 +15,12 @@ using testing::FloatNear;
 using testing::HasSubstr;
 using testing::Not;
 
-// Two ticks, 4 ms apart. The vehicle turns from level to a roll of 90 deg, with three rotors.
+// The vehicle turns from level to a roll of 90 deg, with three rotors.
 Flown two_ticks() {
-  Flown flown;
+  Flown flown = two_level_ticks();
   Trace& trace = flown.trace;
-  trace.present = channels_of(Module::mc_att_control);
-  trace.samples.resize(2);
-  trace.plant.resize(2);
-  trace.samples[1].in.timestamp = 4000;
   trace.samples[1].out.mc_att_ctrl_status.roll_rate_integ = 0.25f;
   const float half = std::sqrt(0.5f);
-  trace.plant[0].q = {1, 0, 0, 0};
   trace.plant[1].q = {half, half, 0, 0};
   for (PlantSample& sample : trace.plant) {
     sample.rotor_rad_s = {500, 500, 500};
