@@ -27,7 +27,7 @@ class Queue {
   void drop_front(std::size_t count) {
     begin_ += count;
     if (begin_ == values_.size()) return clear();
-    // So that each element moves once at most on average, and not for a few bytes.
+    // Then each element moves at most once on average. A few bytes are not worth a move.
     constexpr std::size_t few_bytes = 4096;
     if (2 * begin_ < values_.size() || begin_ * sizeof(T) < few_bytes) return;
     values_.erase(values_.begin(), values_.begin() + static_cast<std::ptrdiff_t>(begin_));

@@ -34,9 +34,8 @@ class TimeCheck {
     return fits_at_once(std::get<Data>(message)) ? TimeFit::plausible
                                                  : check_closely(reader, message);
   }
-  // Does the same if the time is plausible without a look at those that follow, as nearly all are:
-  // it is not far after those before it, and not the first of its topic. Otherwise false, and
-  // nothing is changed.
+  // Does the same if the samples before this one show that its time is plausible, as for nearly all
+  // samples. False, and nothing is changed: it is far after them, or the first of its topic.
   bool fits_at_once(const Data& data) {
     const std::size_t index = data.subscription->index;
     if (index >= topics_.size() || !topics_[index].last_us) return false;
