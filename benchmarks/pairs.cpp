@@ -126,8 +126,9 @@ const std::vector<Pair>& pairs() {
        1 / 20.0, "at least 20x the speed of single steps"},
       {"step of a program in shared memory, on two CPUs: 99.9th percentile", "program/shared_p999",
        "program/memory_p999", 0, "at most 3 us", 0, 3e-6},
-      {"trace CSV, read", "csv/read_csv", "csv/from_chars", 1 / 0.8,
-       "at least 0.8x the speed of a bare from_chars loop"},
+      // Also checks each cell and the order of the times, and makes the sample of each tick.
+      {"trace CSV, read", "csv/read_csv", "csv/from_chars", 1.40,
+       "at most 1.40x a bare from_chars loop"},
       {"trace CSV, write", "csv/write_csv", "csv/to_chars", 1 / 0.8,
        "at least 0.8x the speed of a bare to_chars loop"},
       {"ULog of 34 MB, read", "ulog/read", "ulog/blocks", 5,
@@ -151,8 +152,9 @@ const std::vector<Pair>& pairs() {
        "mj_step/cascade", 1.25, "at most 1.25x the bare steps"},
       {"flight of a sweep, one job", "sweep/reference", "sweep/mj_step", 1.10,
        "at most 1.10x the bare steps", 0, 0, "flights/s"},
-      {"flight of a sweep with a port, one job", "sweep/with_port", "sweep/mj_step", 1.10,
-       "at most 1.10x the bare steps", 0, 0, "flights/s"},
+      // Each flight has a process of the port of its own, so that no flight depends on another.
+      {"flight of a sweep with a port, one job", "sweep/with_port", "sweep/mj_step", 1.30,
+       "at most 1.30x the bare steps", 0, 0, "flights/s"},
       {"flight of a sweep, 2 jobs", "sweep/two_jobs", "sweep/mj_step_two", 1.10,
        "at most 1.10x the bare steps by 2 threads", 0, 0, "flights/s"},
       {"ode plant, 1 s at 1 kHz", "ode/plant", "ode/erkstep", 1.10, "at most 1.10x bare ERKStep"},

@@ -49,7 +49,7 @@ Result<CostBudget> read_back(const std::string& text) {
 
 TEST(CostBudget, HasTheWorstStepOfEachGroupAndRate) {
   const CostBudget budget = budget_of(
-      {counted_vector("rates", "p", {Cost(5), Cost(9)}), counted_vector("rates", "q", {Cost(8)}),
+      {counted_vector("rates", "q", {Cost(8)}), counted_vector("rates", "p", {Cost(5), Cost(9)}),
        counted_vector("rates", "p", {Cost(6)}, Rate::hz(500)), VectorTimes{}});
   ASSERT_EQ(budget.worst.size(), 2u);
   const WorstCost& worst = budget.worst.at({"px4-v1.5.5", "mc_att_control", "rates", "250"});
