@@ -34,6 +34,7 @@ constexpr const char* description =
 
 constexpr const char* footer =
     "\nFirst steps (`attest help COMMAND` has more):\n"
+    "  attest new-port mine --lang c                  make a folder with a complete port\n"
     "  attest run                                     run all cases on the built-in reference\n"
     "  attest run ./libmine.so                        run all cases on your port\n"
     "  attest run --port lib:./libmine.so --level exact --filter 'attitude/*@250hz'\n"

@@ -47,6 +47,15 @@ commands=(run hunt replay sim stress sweep sweep-rate schedule time compare plot
   has 'no case with --group attitude matches `rates/*`'
 }
 
+@test "attest alone begins with new-port" {
+  run "$ATTEST"
+  [ "$status" -eq 2 ]
+  [[ $(grep -m1 '^  attest ' <<<"$output") == "  attest new-port "* ]]
+  run "$ATTEST" $(sed -nE '/new-port/s/^  attest (.*[^ ])  +.*/\1/p' <<<"$output")
+  [ "$status" -eq 0 ]
+  [ -x mine/check ]
+}
+
 @test "--rate and --rates are one option" {
   for option in --rate --rates; do
     run "$ATTEST" run --group tpa --profile px4-v1.5.5 "$option" 250,500
