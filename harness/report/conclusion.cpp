@@ -39,19 +39,14 @@ std::string setting(const RunResult& run) {
   return fmt::format("{}{}, {}", out, name_of(run.level), counted(run.rates.size(), "rate"));
 }
 
-// "47 need --level exact, 30 need the mixer, 1 skip": what was not judged or expected to fail.
+// "47 need --level exact, 30 do not apply to this port, 1 skip": what was not judged or expected to fail.
 std::string counted_apart(const RunResult& run) {
-  constexpr std::string_view lacks = "the port has no ", and_extension = " (extension ";
   std::vector<std::pair<std::string, std::size_t>> needs;
   for (const VectorResult& result : run.results) {
     if (result.verdict == Verdict::pass || fails_a_run(result.verdict)) continue;
     std::string what(name_of(result.verdict));
-    const std::size_t end = result.reason.find(and_extension);
-    if (result.exact_only) {
-      what = "need --level exact";
-    } else if (result.reason.starts_with(lacks) && end != std::string::npos) {
-      what = "need the " + one_line(result.reason.substr(lacks.size(), end - lacks.size()));
-    }
+    if (result.exact_only) what = "need --level exact";
+    if (!why_not_applicable(result).empty()) what = "do not apply to this port";
     auto known = std::ranges::find(needs, what, &std::pair<std::string, std::size_t>::first);
     if (known == needs.end()) known = needs.emplace(needs.end(), what, 0);
     ++known->second;
@@ -99,6 +94,14 @@ std::string suspects_text(const Diagnosis& diagnosis) {
 Conclusion conclusion_of(const RunResult& run) {
   if (run.failed() || !run.errors.empty()) return Conclusion::fail;
   return run.count(Verdict::pass) > 0 ? Conclusion::pass : Conclusion::none;
+}
+
+std::string_view why_not_applicable(const VectorResult& result) {
+  constexpr std::string_view does_not_apply = "does not apply to this port: ";
+  if (is_judged(result.verdict)) return {};
+  const std::string_view why = result.reason;
+  if (why.starts_with(does_not_apply)) return why.substr(does_not_apply.size());
+  return why.starts_with("the port does not support profile ") ? why : std::string_view();
 }
 
 std::string conclusion_text(const RunResult& run, std::string_view duration) {

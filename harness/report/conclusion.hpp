@@ -12,6 +12,10 @@ namespace attest {
 // fail: a vector failed, or an error occurred. pass: at least one vector passed. none: all others.
 Conclusion conclusion_of(const RunResult& run);
 
+// Why a vector that was not judged does not apply to the port: "it has no module mixer (extension
+// attest.mixer.v1)". Empty for other vectors.
+std::string_view why_not_applicable(const VectorResult& result);
+
 // "18 failed, 1 passed; 1 need --level exact (px4-v1.5.5, numeric, 1 rate) in 1.2 s". `duration` is
 // " in 1.2 s", or empty.
 std::string conclusion_text(const RunResult& run, std::string_view duration = {});

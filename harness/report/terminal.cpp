@@ -146,11 +146,29 @@ std::string cases_of(const Together& group) {
   return out;
 }
 
+// "  28 do not apply to this port:", and a line for each reason.
+std::string not_applicable(const RunResult& run) {
+  const auto reasons = grouped(
+      run, [](const VectorResult& result) { return !why_not_applicable(result).empty(); },
+      [](const VectorResult& a, const VectorResult& b) { return a.reason == b.reason; });
+  std::size_t count = 0;
+  std::string lines;
+  for (const Together& group : reasons) {
+    count += group.size();
+    lines +=
+        fmt::format("      {}: {}\n", group.size(), one_line(why_not_applicable(*group.front())));
+  }
+  return count == 0 ? "" : fmt::format("  {} do not apply to this port:\n{}", count, lines);
+}
+
 std::string counted_apart(const RunResult& run) {
-  std::string out;
+  std::string out = not_applicable(run);
   for (const Verdict verdict : {Verdict::unsupported, Verdict::skip, Verdict::xfail}) {
     const auto groups = grouped(
-        run, [verdict](const VectorResult& result) { return result.verdict == verdict; },
+        run,
+        [verdict](const VectorResult& result) {
+          return result.verdict == verdict && why_not_applicable(result).empty();
+        },
         [](const VectorResult& a, const VectorResult& b) { return a.reason == b.reason; });
     for (const Together& group : groups) {
       const std::string reason = one_line(group.front()->reason);

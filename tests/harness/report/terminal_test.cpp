@@ -43,15 +43,36 @@ TEST(Summary, TheLastLineIsTheConformanceStatement) {
                        "rates) in 1.2 s\n"));
   run.results[0].exact_only = true;
   run.results[1].verdict = Verdict::unsupported;
-  run.results[1].reason = "the port has no rate law (extension attest.rate_law.v1)";
-  EXPECT_THAT(summary(run), HasSubstr("\nPASS 4 passed, 0 failed; 1 need --level exact, 1 need the "
-                                      "rate law (px4-v1.5.5, "));
+  run.results[1].reason = "does not apply to this port: it has no module rate_law (extension attest.rate_law.v1)";
+  EXPECT_THAT(summary(run), HasSubstr("\nPASS 4 passed, 0 failed; 1 need --level exact, 1 do "
+                                      "not apply to this port (px4-v1.5.5, "));
   run.results[2].verdict = Verdict::crash;
   run.stopped_early = true;
   EXPECT_THAT(summary(run),
-              EndsWith("\nFAIL 1 failed (1 crash), 3 passed; 1 need --level exact, 1 need "
-                       "the rate law (px4-v1.5.5, exact, 2 rates) in 1.2 s; stopped "
+              EndsWith("\nFAIL 1 failed (1 crash), 3 passed; 1 need --level exact, 1 do "
+                       "not apply to this port (px4-v1.5.5, exact, 2 rates) in 1.2 s; stopped "
                        "early, the rest was not run\n"));
+}
+
+TEST(Summary, VectorsThatDoNotApplyAreCountedTogether) {
+  RunResult run = passing_run();
+  const auto unsupported = [&](std::size_t index, const char* reason) {
+    run.results[index].verdict = Verdict::unsupported;
+    run.results[index].reason = reason;
+  };
+  unsupported(0, "does not apply to this port: it has no module mixer (extension attest.mixer.v1)");
+  unsupported(1, "does not apply to this port: it makes no module attitude_law of profile a");
+  unsupported(2, "the port declares that it lacks battery");
+  run.results[3].verdict = Verdict::skip;
+  run.results[3].reason = "the port does not support profile px4-v1.16.0";
+  EXPECT_THAT(summary(run),
+              HasSubstr("as conformant:\n"
+                        "  3 do not apply to this port:\n"
+                        "      1: it has no module mixer (extension attest.mixer.v1)\n"
+                        "      1: it makes no module attitude_law of profile a\n"
+                        "      1: the port does not support profile px4-v1.16.0\n"
+                        "  1 unsupported: the port declares that it lacks battery\n"));
+  EXPECT_THAT(summary(run), HasSubstr("; 3 do not apply to this port, 1 unsupported ("));
 }
 
 TEST(Summary, TheClaimForEachProfileHasALine) {
