@@ -107,12 +107,13 @@ std::string_view why_not_applicable(const VectorResult& result) {
 std::string conclusion_text(const RunResult& run, std::string_view duration) {
   const auto failed = static_cast<std::size_t>(std::ranges::count_if(
       run.results, [](const VectorResult& result) { return fails_a_run(result.verdict); }));
-  const std::string passed = fmt::format("{} passed", run.count(Verdict::pass));
-  std::string out = passed + ", 0 failed";
+  const std::size_t passed = run.count(Verdict::pass);
+  std::string out = fmt::format("{} passed, 0 failed", counted(passed, "vector"));
   if (failed > 0) {
     const std::string kinds = failing_verdicts(run);
     const bool only_fail = kinds == fmt::format("{} {}", failed, name_of(Verdict::fail));
-    out = fmt::format("{} failed{}, {}", failed, only_fail ? "" : " (" + kinds + ")", passed);
+    out = fmt::format("{} of {} failed{}, {} passed", failed, counted(run.results.size(), "vector"),
+                      only_fail ? "" : " (" + kinds + ")", passed);
   }
   if (!run.errors.empty()) out = counted(run.errors.size(), "error") + "; " + out;
   const std::string apart = counted_apart(run);
@@ -131,7 +132,8 @@ std::string first_stages(const RunResult& run) {
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < counts.size(); ++i) {
     if (counts[i] == 0) continue;
-    parts.push_back(fmt::format("{} in {}", name_of(static_cast<Stage>(i)), counts[i]));
+    parts.push_back(
+        fmt::format("{} in {}", name_of(static_cast<Stage>(i)), counted(counts[i], "vector")));
   }
   if (parts.empty()) return {};
   return fmt::format("first stage to differ: {}", fmt::join(parts, ", "));

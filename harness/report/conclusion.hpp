@@ -16,11 +16,11 @@ Conclusion conclusion_of(const RunResult& run);
 // attest.mixer.v1)". Empty for other vectors.
 std::string_view why_not_applicable(const VectorResult& result);
 
-// "18 failed, 1 passed; 1 need --level exact (px4-v1.5.5, numeric, 1 rate) in 1.2 s". `duration` is
+// "18 of 20 vectors failed, 1 passed; 1 need --level exact (px4-v1.5.5, numeric, 1 rate) in 1.2 s". `duration` is
 // " in 1.2 s", or empty.
 std::string conclusion_text(const RunResult& run, std::string_view duration = {});
 
-// "first stage to differ: attitude law in 18, mixer in 2": the number of first deviations in each
+// "first stage to differ: attitude law in 18 vectors, mixer in 2 vectors": the number of first deviations in each
 // stage. Empty without a deviation.
 std::string first_stages(const RunResult& run);
 

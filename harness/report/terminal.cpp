@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -176,7 +177,7 @@ std::string counted_apart(const RunResult& run) {
                          reason.empty() ? "no reason given" : reason, cases_of(group));
     }
   }
-  return out.empty() ? out : "counted apart, not as conformant:\n" + out + "\n";
+  return out.empty() ? out : "vectors counted apart, not as conformant:\n" + out + "\n";
 }
 
 std::string_view plural_of(Quantity quantity) {
@@ -288,22 +289,22 @@ std::string accuracy(const RunResult& run, TerminalStyle style) {
   return table ? render_text(*table, style) + "\n" : "";
 }
 
-// "failed in 12 cases: px4-v1.5.5/tpa/by_pitch, ... and 4 more". One name for all profiles.
+// "12 of 48 cases failed, such as px4-v1.5.5/tpa/by_pitch, ...". A case of several profiles is named
+// in one of them.
 std::string failed_cases(const RunResult& run) {
-  constexpr std::size_t named = 8;
-  std::vector<std::string> ids, names;
+  constexpr std::size_t most_named = 8;
+  std::set<std::string> all, failed, names;
+  std::vector<std::string> named;
   for (const VectorResult& result : run.results) {
+    all.insert(result.case_id());
     if (!fails_a_run(result.verdict)) continue;
-    const std::string name = one_line(result.group + "/" + result.name);
-    if (std::ranges::find(names, name) != names.end()) continue;
-    names.push_back(name);
-    if (names.size() <= named) ids.push_back(one_line(result.case_id()));
+    failed.insert(result.case_id());
+    if (!names.insert(result.group + "/" + result.name).second) continue;
+    if (named.size() < most_named) named.push_back(one_line(result.case_id()));
   }
-  if (names.empty()) return "";
-  std::string out =
-      fmt::format("failed in {}: {}", counted(names.size(), "case"), fmt::join(ids, ", "));
-  if (names.size() > named) out += fmt::format(" and {} more", names.size() - named);
-  return out +
+  if (failed.empty()) return "";
+  return fmt::format("{} of {} failed{} {}", failed.size(), counted(all.size(), "case"),
+                     named.size() < failed.size() ? ", such as" : ":", fmt::join(named, ", ")) +
          "\n  --verbose shows all of them, --html FILE with plots; --json FILE and --junit FILE "
          "have "
          "all\n";

@@ -41,7 +41,7 @@ inline constexpr std::size_t errors_shown = 20;
 // what a terminal shows, so then comes what matters: errors, the names of the failed cases, the
 // stages that differ first, the diagnosis, the conformance statement, and the verdict:
 //
-//     PASS 715 passed, 0 failed (px4-v1.5.5, exact, 11 rates) in 1.2 s
+//     PASS 715 vectors passed, 0 failed (px4-v1.5.5, exact, 11 rates) in 1.2 s
 //
 // PASS: no vector failed, no error occurred, and at least one vector passed. NONE: no failure and
 // no error, but no vector passed. FAIL: all other runs. `wall_s` is the time of the whole run.

@@ -49,7 +49,7 @@ needs_scopes() {
     mkdir -p elsewhere
     echo 1 >elsewhere/file
     CASE=d_alone VICTIM="$PWD/elsewhere/file" attacked $attack
-    has "PASS 1 passed, 0 failed"
+    has "PASS 1 vector passed, 0 failed"
     [ "$status" -eq 0 ]
   done
 }

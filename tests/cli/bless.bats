@@ -130,7 +130,7 @@ sha256_of_profile() {
   done
   run "$ATTEST" --suite suite run --level exact
   [ "$status" -eq 0 ]
-  has "22 passed, 0 failed"
+  has "22 vectors passed, 0 failed"
   # A filter that names one profile blesses that one.
   sed -i 's/to = 20/to = 25/' suite/cases/px4-v1.5.5/attitude/roll.toml
   run "$ATTEST" --suite suite bless --filter 'px4-v1.3.4/*' --yes --reason "larger tilt"
@@ -156,7 +156,7 @@ sha256_of_profile() {
   ! grep -q px4-v1.3.4 $golden
   run "$ATTEST" --suite suite run --level exact
   [ "$status" -eq 0 ]
-  has "22 passed, 0 failed"
+  has "22 vectors passed, 0 failed"
 }
 
 # A killed bless has written the provenance, and no golden is in its place yet.

@@ -24,11 +24,11 @@ load common
 @test "a pair selects its vectors, and so does the rate of the rate unit" {
   run "$ATTEST" run --filter 'px4-v1.16.0/flight/hover' --rate 250:1000
   [ "$status" -eq 0 ]
-  has "PASS 10 passed, 0 failed"
+  has "PASS 10 vectors passed, 0 failed"
   run "$ATTEST" run --filter 'px4-v1.16.0/flight/hover' --rate 400
-  has "PASS 4 passed, 0 failed"
+  has "PASS 4 vectors passed, 0 failed"
   run "$ATTEST" run --filter 'px4-v1.16.0/flight/hover@50-250hz-iris-ode'
-  has "PASS 1 passed, 0 failed"
+  has "PASS 1 vector passed, 0 failed"
 }
 
 @test "a name of both laws is that of the law that flies at the rate" {
@@ -50,7 +50,7 @@ load common
   run "$ATTEST" run --filter 'px4-v1.16.0/flight/tilt_step_30@250-1000hz-iris-*' \
     --port fault:cascade-error-is-angle --save-traces saved
   [ "$status" -eq 1 ]
-  has "FAIL 2 failed"
+  has "FAIL 2 of 2 vectors failed"
   has "look first at the attitude law"
   local saved=saved/px4-v1.16.0/flight/tilt_step_30/250-1000hz-iris-ode
   run "$ATTEST" compare $saved.attitude_unit.{got,want}.csv
@@ -64,7 +64,7 @@ load common
   run "$ATTEST" run --filter 'px4-v1.16.0/flight/tilt_step_30@250-1000hz-iris-*' \
     --port fault:cascade-d-reversed
   [ "$status" -eq 1 ]
-  has "FAIL 2 failed"
+  has "FAIL 2 of 2 vectors failed"
   has "look first at the rate law"
 }
 
@@ -73,7 +73,7 @@ load common
   run "$ATTEST" run --group flight --profile px4-v1.16.0 --rate 50:250 --plant ode \
     --port lib:./right.so
   [ "$status" -eq 0 ]
-  has "PASS 16 passed, 0 failed"
+  has "PASS 16 vectors passed, 0 failed"
   rate_only wrong 's/err\[i\] \/ 6/err[i] \/ 7/; s/6\.98/7.98/'
   run cmp -s right.so wrong.so
   [ "$status" -eq 1 ]
@@ -97,7 +97,7 @@ load common
   has "px4-v1.16.0/flight/tilt_step_30"
   run "$ATTEST" run --timing timing.json
   [ "$status" -eq 0 ]
-  has "PASS 1 passed, 0 failed"
+  has "PASS 1 vector passed, 0 failed"
   run "$ATTEST" run --timing timing.json --port fault:cascade-error-is-angle
   [ "$status" -eq 1 ]
   run "$ATTEST" schedule tasks.toml --case px4-v1.5.5/flight/tilt_step_30
@@ -146,7 +146,7 @@ assert received and set(received) <= begins
 CHECK
   run "$ATTEST" run --timing t.json
   [ "$status" -eq 0 ]
-  has "PASS 1 passed, 0 failed"
+  has "PASS 1 vector passed, 0 failed"
   # On a machine that stalls, the recorded flight may miss its bounds.
   for out in one two; do
     run "$ATTEST" sim --timing t.json --out $out.csv

@@ -51,7 +51,7 @@ cases=(acro/superexpo attitude/tilt_by_azimuth battery/clamped_after_scaling
   done
   run "$ATTEST" run --level exact --port "$both" "${filters[@]}"
   [ "$status" -eq 0 ]
-  has "PASS ${#cases[@]} passed, 0 failed"
+  has "PASS ${#cases[@]} vectors passed, 0 failed"
 }
 
 @test "a wrong unit of a program is found in open loop and in flight, and so is its stage" {
@@ -62,7 +62,7 @@ cases=(acro/superexpo attitude/tilt_by_azimuth battery/clamped_after_scaling
   run "$ATTEST" run --port "proc:$PYTHON wrong/port.py" --filter px4-v1.16.0/rates/i_alone@250hz \
     --filter px4-v1.16.0/flight/tilt_step_30@100-400hz-iris-ode
   [ "$status" -eq 1 ]
-  has "FAIL 2 failed"
+  has "FAIL 2 of 2 vectors failed"
   has "look first at the rate law"
 }
 
@@ -74,7 +74,7 @@ cases=(acro/superexpo attitude/tilt_by_azimuth battery/clamped_after_scaling
     "proc:$PYTHON without_rate_unit/port.py"; do
     run "$ATTEST" run --port "$port" --filter 'px4-v1.16.0/flight/sticks@100-400hz-iris-ode'
     [ "$status" -eq 0 ]
-    has "PASS 1 passed, 0 failed"
+    has "PASS 1 vector passed, 0 failed"
     "$ATTEST" sim sticks --rate 100:400 --plant ode --out got.csv --port "$port"
     cmp got.csv want.csv
     cmp got.attitude_unit.csv want.attitude_unit.csv
@@ -90,7 +90,7 @@ cases=(acro/superexpo attitude/tilt_by_azimuth battery/clamped_after_scaling
     --filter 'px4-v1.16.0/flight/hover@100-400hz-iris-ode' \
     --filter px4-v1.16.0/attitude/zero_error@250hz --json report.json
   [ "$status" -eq 0 ]
-  has "1 passed, 0 failed; 1 unsupported"
+  has "1 vector passed, 0 failed; 1 unsupported"
   grep -q "$reason" report.json
   run "$ATTEST" sim hover --rate 100:400 --plant ode --out none.csv \
     --port "proc:$PYTHON single/port.py"
@@ -108,7 +108,7 @@ cases=(acro/superexpo attitude/tilt_by_azimuth battery/clamped_after_scaling
   [ "$status" -eq 0 ]
   run "$ATTEST" run --timing t.json --port "$both"
   [ "$status" -eq 0 ]
-  has "PASS 1 passed, 0 failed"
+  has "PASS 1 vector passed, 0 failed"
   # The metrics hold with this gain.
   run "$ATTEST" schedule tasks.toml --case tilt_step_30 --port fault:cascade-i-of-this-step
   [ "$status" -eq 1 ]

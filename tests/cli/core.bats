@@ -79,10 +79,10 @@ core_alone() {
   cp core suite/cases/CORE
   run "$ATTEST" --suite suite run --core
   [ "$status" -eq 0 ]
-  has "PASS $(grep -c 'hz$' core) passed, 0 failed"
+  has "PASS $(grep -c 'hz$' core) vectors passed, 0 failed"
   run "$ATTEST" --suite suite run --core-flights
   [ "$status" -eq 0 ]
-  has "PASS 1 passed, 0 failed"
+  has "PASS 1 vector passed, 0 failed"
   echo "px4-v1.5.5/attitude/roll@250hz" >suite/cases/CORE
   run "$ATTEST" --suite suite run --core --rate 50
   [ "$status" -eq 2 ]

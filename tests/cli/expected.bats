@@ -54,7 +54,7 @@ T
   run "$ATTEST" run --filter px4-v1.5.5/rates/p_alone@250hz --port "lib:$PORTS/port_silent.so" \
     --expected-failures known.toml
   [ "$status" -eq 2 ]
-  has "NONE 0 passed, 0 failed; 1 xfail"
+  has "NONE 0 vectors passed, 0 failed; 1 xfail"
   has "conformance: none: no vector passed"
   has "no vector passed: every selected vector was an expected failure, skipped or unsupported"
 }

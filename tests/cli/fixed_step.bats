@@ -28,7 +28,7 @@ groups=(--group attitude --group rates --group timing --group mixer)
   run "$ATTEST" run --filter '*/hover@*-iris-mujoco' --filter '*/jitter_uniform@*-iris-mujoco' \
     --port "$(right)"
   [ "$status" -eq 0 ]
-  has "PASS 2 passed, 0 failed; 34 "
+  has "PASS 2 vectors passed, 0 failed; 34 "
   has "has late or missing ticks"
 }
 

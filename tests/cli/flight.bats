@@ -36,15 +36,15 @@ broken() {
 @test "every case is flown by every vehicle on both plants" {
   run "$ATTEST" run --group flight --rate 100 --filter '*tilt_step_30' --filter '*motor_failure'
   [ "$status" -eq 0 ]
-  has "PASS 40 passed, 0 failed"
+  has "PASS 40 vectors passed, 0 failed"
 }
 
 @test "vehicle and plant select flights" {
   run "$ATTEST" run --vehicle hexa --plant ode --filter 'flight/hover' --rate 100,1000
   [ "$status" -eq 0 ]
-  has "PASS 9 passed, 0 failed"
+  has "PASS 9 vectors passed, 0 failed"
   run "$ATTEST" run --filter 'px4-v1.5.5/flight/hover@250hz-iris-mujoco'
-  has "PASS 1 passed, 0 failed"
+  has "PASS 1 vector passed, 0 failed"
   run "$ATTEST" run --vehicle hxea --filter 'flight/*'
   [ "$status" -eq 2 ]
   has 'no cases of vehicle `hxea`; did you mean `hexa`?'

@@ -14,11 +14,11 @@ from_log=ours/cases/px4-v1.5.5/from_log/gust_from_1s_to_1_5s.toml
   "$ATTEST" --suite ours bless --group from_log --yes --reason "a flight"
   run "$ATTEST" --suite ours run --group from_log
   [ "$status" -eq 0 ]
-  has "11 passed, 0 failed"
+  has "11 vectors passed, 0 failed"
   has "custom suite"
   run "$ATTEST" --suite ours run --group from_log --port fault:quat-order-xyzw
   [ "$status" -eq 1 ]
-  has "FAIL 11 failed"
+  has "FAIL 11 of 11 vectors failed"
 }
 
 @test "a case of a log overwrites no file, and is in no released suite" {
@@ -64,14 +64,14 @@ units_log() {
   for port in builtin "lib:$(dirname "$STARTER")/../c_cascade/attest_starter_c_cascade.so"; do
     run "$ATTEST" --suite ours run --group from_log --level exact --port "$port"
     [ "$status" -eq 0 ]
-    has "16 passed, 0 failed"
+    has "16 vectors passed, 0 failed"
   done
   run "$ATTEST" --suite ours run --group from_log --no-diagnose --port fault:cascade-m-not-canonical
   [ "$status" -eq 1 ]
-  has "FAIL 5 failed"
+  has "FAIL 5 of 16 vectors failed"
   run "$ATTEST" --suite ours run --group from_log --no-diagnose --port fault:cascade-d-reversed
   [ "$status" -eq 1 ]
-  has "FAIL 11 failed"
+  has "FAIL 11 of 16 vectors failed"
 }
 
 @test "a log that is too sparse for the rate unit becomes a case of its single steps" {
@@ -124,10 +124,10 @@ ANSWER
     run "$ATTEST" --suite ours run --group from_log --rate 250 --port recorded:inputs --no-diagnose
     if [[ $port == lib:* ]]; then
       [ "$status" -eq 0 ]
-      has "PASS 2 passed, 0 failed"
+      has "PASS 2 vectors passed, 0 failed"
     else
       [ "$status" -eq 1 ]
-      has "FAIL 1 failed, 1 passed"
+      has "FAIL 1 of 2 vectors failed, 1 passed"
     fi
   done
 }

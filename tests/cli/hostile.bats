@@ -85,7 +85,7 @@ judged() {
       --no-diagnose
     [ "$status" -eq 1 ]
     lacks "PASS"
-    has "FAIL 7 failed"
+    has "FAIL 7 of 7 vectors failed"
   done
 }
 

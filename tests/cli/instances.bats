@@ -10,7 +10,7 @@ all_fail() {
       run "$ATTEST" run --port "lib:$PORTS/hostile_state_$port$law.so" --no-diagnose \
         --filter "$1@250hz"
       echo "$port$law"
-      [[ $status -eq 1 && $output =~ FAIL\ (2|10)\ failed,\ 0\ passed ]] || {
+      [[ $status -eq 1 && $output =~ FAIL\ (2\ of\ 2|10\ of\ 10)\ vectors\ failed,\ 0\ passed ]] || {
         echo "exit $status: $output"
         return 1
       }
@@ -82,7 +82,7 @@ COMMANDS
   run "$ATTEST" run --port "lib:$PORTS/hostile_state_from_instance_5.so" --no-diagnose \
     --filter 'rates/ff_alone@*' --profile px4-v1.5.5 --json report.json --junit junit.xml
   [ "$status" -eq 1 ]
-  has "FAIL 2 failed, 9 passed"
+  has "FAIL 2 of 11 vectors failed, 9 passed"
   has "it passes alone, in a new process of the port"
   python3 - <<'CHECK'
 import json
@@ -106,7 +106,7 @@ CHECK
   run "$ATTEST" run --port lib:./hangs.so --filter 'rates/ff_alone@*' --profile px4-v1.5.5 \
     --timeout 0.5 --no-diagnose --junit junit.xml
   [ "$status" -eq 1 ]
-  has "FAIL 9 failed (9 timeout), 2 passed"
+  has "FAIL 9 of 11 vectors failed (9 timeout), 2 passed"
   reproduced 9
   run "$ATTEST" run --port lib:./hangs.so --filter 'rates/ff_alone@400hz' --profile px4-v1.5.5
   [ "$status" -eq 0 ]

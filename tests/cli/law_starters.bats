@@ -14,7 +14,7 @@ in_python="$SOURCE/controller/starters/python_law"
   run "$ATTEST" run --level exact --group attitude_law,rate_law --port "$in_c"
   [ "$status" -eq 0 ]
   # All vectors, but for these three reasons, which are no fault of the port.
-  [[ $output =~ PASS\ ([0-9]+)\ passed ]]
+  [[ $output =~ PASS\ ([0-9]+)\ vectors\ passed ]]
   [ "${BASH_REMATCH[1]}" -ge 174 ]
   [ "$(grep -cE '^ +[0-9]+ (skip|unsupported)' <<<"$output")" -eq 0 ]
   [ "$(grep -A9 ' do not apply to this port:$' <<<"$output" | grep -cE '^      [0-9]+: ')" -eq 3 ]
@@ -28,7 +28,7 @@ in_python="$SOURCE/controller/starters/python_law"
   run "$ATTEST" run --filter '*/flight/hover@100-400hz-iris-ode' --profile px4-v1.16.0 \
     --filter '*/rate_law/d' --port "$in_c"
   [ "$status" -eq 0 ]
-  has "1 passed, 0 failed; 1 "
+  has "1 vector passed, 0 failed; 1 "
   has "it has no module rate_unit"
 }
 
@@ -37,7 +37,7 @@ in_python="$SOURCE/controller/starters/python_law"
   run "$ATTEST" run --level exact --group attitude_law,rate_law --profile px4-v1.17 \
     --port "proc:$PYTHON $in_python/port.py"
   [ "$status" -eq 0 ]
-  [[ $output =~ PASS\ ([0-9]+)\ passed,\ 0\ failed\ \( ]]
+  [[ $output =~ PASS\ ([0-9]+)\ vectors\ passed,\ 0\ failed\ \( ]]
   [ "${BASH_REMATCH[1]}" -ge 39 ]
   run "$ATTEST" smoke --port "proc:$PYTHON $in_python/port.py"
   [ "$status" -eq 0 ]
@@ -49,7 +49,7 @@ in_python="$SOURCE/controller/starters/python_law"
   local port="proc:octave-cli --norc --quiet $SOURCE/controller/starters/octave/port.m"
   run "$ATTEST" run --level exact --group attitude_law,rate_law --profile px4-v1.17 --port "$port"
   [ "$status" -eq 0 ]
-  [[ $output =~ PASS\ ([0-9]+)\ passed,\ 0\ failed\ \( ]]
+  [[ $output =~ PASS\ ([0-9]+)\ vectors\ passed,\ 0\ failed\ \( ]]
   [ "${BASH_REMATCH[1]}" -ge 39 ]
   run "$ATTEST" smoke --port "$port"
   [ "$status" -eq 0 ]
@@ -93,7 +93,7 @@ in_python="$SOURCE/controller/starters/python_law"
   "$PYTHON" "$SOURCE/tests/ports/recorded/rate_law.py" calls
   run "$ATTEST" run --port recorded:calls --group rate_law --profile px4-v1.16.0
   [ "$status" -eq 0 ]
-  has "PASS 15 passed, 0 failed; 1 need --level exact, 2 skip"
+  has "PASS 15 vectors passed, 0 failed; 1 need --level exact, 2 skip"
 }
 
 @test "a trace of a law is replayed" {

@@ -213,10 +213,10 @@ refused() {
   [ "$status" -eq 2 ]
   has "no vector failed in the last \`attest run\` in this folder"
   run "$ATTEST" run "${selected[@]}" --port fault:tpa-missing
-  failed=$(grep -oE 'FAIL [0-9]+ failed' <<<"$output")
+  failed=$(grep -oE 'FAIL [0-9]+ of' <<<"$output")
   run "$ATTEST" run --last-failed --port fault:tpa-missing
   [ "$status" -eq 1 ]
-  has "$failed, 0 passed"
+  has "$failed ${failed//[^0-9]/} vectors failed, 0 passed"
   mkdir other
   cd other
   run "$ATTEST" run --last-failed
@@ -234,10 +234,10 @@ refused() {
   failed=$(grep -c '"verdict": "fail"' all.json)
   run "$ATTEST" run --port fault:tpa-missing --rerun-failed all.json
   [ "$status" -eq 1 ]
-  has "$failed failed, 0 passed"
+  has "$failed of $failed vectors failed, 0 passed"
   run "$ATTEST" run --rerun-failed all.json
   [ "$status" -eq 0 ]
-  has "$failed passed, 0 failed"
+  has "$failed vectors passed, 0 failed"
   run "$ATTEST" run --rerun-failed all.json --group attitude
   [ "$status" -eq 2 ]
   has "all.json: no selected vector failed in it; run without --rerun-failed"

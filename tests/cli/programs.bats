@@ -137,11 +137,11 @@ starts_of() {
 @test "one process of a program serves many vectors, also if they fail" {
   starts_of "program.py counts_starts"
   [ "$status" -eq 0 ]
-  has "PASS 18 passed, 0 failed"
+  has "PASS 18 vectors passed, 0 failed"
   [ "$(wc -l <starts)" -eq 3 ] # two answer what it is
   starts_of "program.py rolls"
   [ "$status" -eq 1 ]
-  has "FAIL 18 failed"
+  has "FAIL 18 of 20 vectors failed"
   [ "$(wc -l <starts)" -eq 6 ] # three failures were repeated alone
   starts_of "program.py one_unit"
   [ "$status" -eq 0 ]

@@ -26,7 +26,7 @@ answered() {
     --exclude '*/steps_beyond_16_bits'
   [ "$status" -eq 0 ]
   [[ $output =~ note:\ [0-9]+\ of\ [0-9]+\ selected\ vectors\ have\ outputs\ in\ vectors ]]
-  [[ $output =~ PASS\ [0-9]{3}\ passed,\ 0\ failed\; ]]
+  [[ $output =~ PASS\ [0-9]{3}\ vectors\ passed,\ 0\ failed\; ]]
   has "134 skip: a recorded port does not fly"
   has " skip: not answered"
   has "partial: px4-v1.5.5, numeric, 1 rate, groups actuators, anti_windup, arming"
@@ -173,7 +173,7 @@ MAT
   mv $out.csv kept.out.csv
   run "$ATTEST" run --port recorded:vectors "${filter[@]}"
   [ "$status" -eq 0 ]
-  has "PASS 1 passed, 0 failed"
+  has "PASS 1 vector passed, 0 failed"
   cp kept.out.csv $out.csv
   as_mat $out.csv 1
   rm $out.csv
@@ -244,7 +244,7 @@ not_recorded() {
     not_recorded "${names[@]}"
     run "$ATTEST" run --port recorded:vectors "${filter[@]}"
     [ "$status" -eq 2 ]
-    has "NONE 0 passed, 0 failed; 1 unsupported"
+    has "NONE 0 vectors passed, 0 failed; 1 unsupported"
     has "no value is left to judge"
   done
 

@@ -204,7 +204,7 @@ CHECK
 @test "a parent that ignores ended children changes nothing" {
   run env --ignore-signal=CHLD "$ATTEST" run --group tpa --rate 250
   [ "$status" -eq 0 ]
-  has "PASS 8 passed, 0 failed"
+  has "PASS 8 vectors passed, 0 failed"
 }
 
 @test "reports are complete although nobody reads the summary to its end" {

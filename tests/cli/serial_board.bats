@@ -21,7 +21,7 @@ results() {
 @test "a line that loses, repeats and changes bytes does not change a verdict" {
   FAULTS=2 one --level exact
   [ "$status" -eq 0 ]
-  has "PASS 1 passed"
+  has "PASS 1 vector passed"
   cp -r mine/c mine/wrong
   sed -i 's/fabsf(thrust) - g/thrust * thrust - g/' mine/wrong/rate.c
   grep -q 'thrust \* thrust' mine/wrong/rate.c
@@ -52,7 +52,7 @@ PACED
   "$PYTHON" time_of.py
   PACED=1 one
   [ "$status" -eq 0 ]
-  has "PASS 1 passed"
+  has "PASS 1 vector passed"
 }
 
 impatient() { sed -i 's/default=5,/default=2,/' mine/bridge.py; }
@@ -112,7 +112,7 @@ LINE
   DEVICE=device run mine/check --group rates --rate 250
   pkill -P $line
   [ "$status" -eq 0 ]
-  has "PASS 15 passed"
+  has "PASS 15 vectors passed"
   DEVICE=no_such_device run mine/check
   [ "$status" -eq 2 ]
   has "bridge: no_such_device: "

@@ -174,7 +174,7 @@ CHECK
   "$ATTEST" stress --rates 250 --duration 1 "${open[@]}" --record-timing t.json || true
   run "$ATTEST" run --timing t.json
   [ "$status" -eq 0 ]
-  has "PASS 1 passed, 0 failed"
+  has "PASS 1 vector passed, 0 failed"
   # On a machine that stalls, the recorded flight may miss its bounds.
   for out in one.csv two.csv; do
     run "$ATTEST" sim --timing t.json --out "$out"

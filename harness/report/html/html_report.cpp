@@ -54,7 +54,7 @@ std::vector<Section> sections_of(const Report& report) {
     sections.push_back({"Probable mistake", {lines.begin(), lines.end()}, true});
   }
   if (auto lines = failures_without_deviation(run); !lines.empty()) {
-    sections.push_back({"Failures without a deviation", std::move(lines)});
+    sections.push_back({"Vectors that failed without a deviation", std::move(lines)});
   }
   const Statement statement = statement_of(run);
   sections.push_back({"Conformance", {statement.claims.begin(), statement.claims.end()}});
