@@ -75,11 +75,12 @@ void add_flights_only(const std::vector<VectorResult>& results, std::vector<std:
   const bool others_pass = std::any_of(results.begin(), results.end(), [&](const auto& one) {
     return one.verdict == Verdict::pass && is_open_loop(one);
   });
-  if (flights_fail && others_pass && !others_fail) {
-    remarks.emplace_back(
-        "only flights fail: look at what passes between the loops, such as a rates setpoint that "
-        "is one step late");
-  }
+  if (!flights_fail || others_fail) return;
+  remarks.emplace_back(
+      others_pass ? "only flights fail, which the diagnosis does not examine: look at what passes "
+                    "between the loops, such as a rates setpoint that is one step late"
+                  : "only flights were judged, which the diagnosis does not examine: run the cases "
+                    "in open loop, too, for example with --exclude 'flight*/*'");
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace attest {
 
 // Sentences about the port, for people: its instances share state; it has the step of one rate;
-// only its flights fail.
+// only its flights fail, or were judged.
 std::vector<std::string> remarks_on(const std::vector<VectorResult>& results);
 
 }  // namespace attest

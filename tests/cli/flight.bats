@@ -50,6 +50,13 @@ broken() {
   has 'no cases of vehicle `hxea`; did you mean `hexa`?'
 }
 
+@test "if only flights were judged, the report says why it names no mistake" {
+  run "$ATTEST" run --filter '*/flight/hover@250hz-iris-ode' --profile px4-v1.5.5 \
+    --port fault:outputs-late
+  [ "$status" -eq 1 ]
+  has "only flights were judged, which the diagnosis does not examine: run the cases in open loop, too"
+}
+
 @test "a flight of another release than the port's has no result" {
   run "$ATTEST" sim hover --rate 250:1000 --port "lib:$STARTER" --html page.html
   [ "$status" -eq 2 ]

@@ -56,6 +56,10 @@ TEST(Remarks, OnlyFlightsFail) {
   EXPECT_THAT(remarks_on(results), ElementsAre(HasSubstr("only flights fail")));
   results[1].verdict = Verdict::fail;
   EXPECT_THAT(remarks_on(results), IsEmpty());
+  results[1].verdict = Verdict::skip;
+  EXPECT_THAT(remarks_on(results), ElementsAre(HasSubstr("only flights were judged")));
+  results.pop_back();
+  EXPECT_THAT(remarks_on(results), ElementsAre(HasSubstr("run the cases in open loop, too")));
 }
 
 }  // namespace
