@@ -204,9 +204,9 @@ PortFault lacks_module(Port& port, const ModuleUnderTest& subject) {
 
 PortFault makes_none(Port& port, const ModuleUnderTest& subject) {
   if (subject.module == Module::mixer) {
-    return {PortFault::Kind::unsupported, 0,
-            fmt::format("the port makes no mixer `{}` of profile {}", subject.mixer,
-                        subject.profile)};
+    return {
+        PortFault::Kind::unsupported, 0,
+        fmt::format("the port makes no mixer `{}` of profile {}", subject.mixer, subject.profile)};
   }
   if (!makes_another(port, subject)) return no_profile(subject);
   return {PortFault::Kind::unsupported, 0,

@@ -39,7 +39,8 @@ std::string setting(const RunResult& run) {
   return fmt::format("{}{}, {}", out, name_of(run.level), counted(run.rates.size(), "rate"));
 }
 
-// "47 need --level exact, 30 do not apply to this port, 1 skip": what was not judged or expected to fail.
+// "47 need --level exact, 30 do not apply to this port, 1 skip": what was not judged or expected to
+// fail.
 std::string counted_apart(const RunResult& run) {
   std::vector<std::pair<std::string, std::size_t>> needs;
   for (const VectorResult& result : run.results) {
@@ -146,7 +147,7 @@ std::string pattern_text(const Pattern& pattern) {
   return fmt::format("{}: values {}", name_of(pattern.stage), what);
 }
 
-std::string diagnosis_text(const Diagnosis& diagnosis) {
+std::string mistakes_text(const Diagnosis& diagnosis) {
   std::string out = suspects_text(diagnosis);
   for (const Pattern& pattern : diagnosis.patterns) {
     out += fmt::format("  in the {}\n      in {} of the {} {}\n", pattern_text(pattern),
@@ -155,12 +156,19 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
                        fmt::join(pattern.groups, ", "));
   }
   for (const std::string& remark : diagnosis.remarks) out += remark + "\n";
-  if (diagnosis.why.empty()) return out;
-  return out + fmt::format(
-                   "most specific failing case: {}, which {} of the catalogue would fail\n"
-                   "  it tests: {}\n",
-                   diagnosis.specific_case, counted(diagnosis.shown_by_it, "fault"),
-                   one_line(diagnosis.why));
+  return out;
+}
+
+std::string specific_case_text(const Diagnosis& diagnosis) {
+  if (diagnosis.why.empty()) return {};
+  return fmt::format(
+      "most specific failing case: {}, which {} of the catalogue would fail\n"
+      "  it tests: {}\n",
+      diagnosis.specific_case, counted(diagnosis.shown_by_it, "fault"), one_line(diagnosis.why));
+}
+
+std::string diagnosis_text(const Diagnosis& diagnosis) {
+  return mistakes_text(diagnosis) + specific_case_text(diagnosis);
 }
 
 std::string needless_lacks_text(const RunResult& run) {

@@ -289,8 +289,8 @@ std::string accuracy(const RunResult& run, TerminalStyle style) {
   return table ? render_text(*table, style) + "\n" : "";
 }
 
-// "12 of 48 cases failed, such as px4-v1.5.5/tpa/by_pitch, ...". A case of several profiles is named
-// in one of them.
+// "12 of 48 cases failed, such as px4-v1.5.5/tpa/by_pitch, ...". A case of several profiles is
+// named in one of them.
 std::string failed_cases(const RunResult& run) {
   constexpr std::size_t most_named = 8;
   std::set<std::string> all, failed, names;
@@ -359,9 +359,10 @@ std::string render_summary(const RunResult& run, double wall_s, TerminalStyle st
   out += errors(run, style);
   out += failed_cases(run);
   if (const std::string stages = first_stages(run); !stages.empty()) out += stages + "\n";
-  if (diagnosis) out += diagnosis_text(*diagnosis);
+  if (diagnosis) out += specific_case_text(*diagnosis);
   out += conformance(run);
   if (const std::string lacks = needless_lacks_text(run); !lacks.empty()) out += lacks + "\n";
+  if (diagnosis) out += mistakes_text(*diagnosis);
   return broken_at(style.width, out + verdict_line(run, wall_s, style));
 }
 

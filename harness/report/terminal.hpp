@@ -39,7 +39,8 @@ inline constexpr std::size_t errors_shown = 20;
 // the tightest headroom (numeric level); the findings, in the order of the law. A finding is a
 // verdict and the stage that deviates first, and is shown by one case. The end of a long text is
 // what a terminal shows, so then comes what matters: errors, the names of the failed cases, the
-// stages that differ first, the diagnosis, the conformance statement, and the verdict:
+// stages that differ first, the conformance statement, and last the probable mistakes and the
+// verdict:
 //
 //     PASS 715 vectors passed, 0 failed (px4-v1.5.5, exact, 11 rates) in 1.2 s
 //

@@ -26,6 +26,8 @@ load common
   [ "$status" -eq 1 ]
   has "it looks like:"
   has "\`yaw-weight-dropped\`: does not weigh the yaw error (wrong weight; in the stage yaw)"
+  tail -n 4 <<<"$output" | grep -q '^  `yaw-weight-dropped`: '
+  [[ ${lines[-1]} == "FAIL "* ]]
   grep -q '"fault": "yaw-weight-dropped"' report.json
   run "$ATTEST" run --port fault:yaw-weight-dropped --rate 250 --group attitude --no-diagnose
   lacks "it looks like"

@@ -66,6 +66,17 @@ TEST(DiagnosisText, OfAnUnknownMistakeHasWhatItsDeviationsHaveInCommon) {
                                 "      in 1 failing vector of the group sticks\n"));
 }
 
+TEST(DiagnosisText, IsAboveTheVerdict) {
+  Diagnosis diagnosis = unlike_every_fault();
+  diagnosis.suspects = {{faults::find_fault("yaw-reversed"), 9, 9, {}}};
+  diagnosis.specific_case = "px4-v1.5.5/modes/acro";
+  diagnosis.why = "A stick.";
+  const std::string text = render_summary(sample_run(), 1, {}, diagnosis);
+  EXPECT_THAT(text, testing::ContainsRegex("\nit looks like:\n  `yaw-reversed`[^\n]*\n"
+                                           "      gives [^\n]*\nFAIL [^\n]*\n$"));
+  EXPECT_LT(text.find("it tests: A stick."), text.find("\nconformance:"));
+}
+
 TEST(DiagnosisText, EndsWithThePurposeOfTheMostSpecificCase) {
   Diagnosis diagnosis = unlike_every_fault();
   diagnosis.specific_case = "px4-v1.5.5/modes/acro";

@@ -43,15 +43,17 @@ TEST(Summary, TheLastLineIsTheConformanceStatement) {
                        "rates) in 1.2 s\n"));
   run.results[0].exact_only = true;
   run.results[1].verdict = Verdict::unsupported;
-  run.results[1].reason = "does not apply to this port: it has no module rate_law (extension attest.rate_law.v1)";
+  run.results[1].reason =
+      "does not apply to this port: it has no module rate_law (extension attest.rate_law.v1)";
   EXPECT_THAT(summary(run), HasSubstr("\nPASS 4 passed, 0 failed; 1 need --level exact, 1 do "
                                       "not apply to this port (px4-v1.5.5, "));
   run.results[2].verdict = Verdict::crash;
   run.stopped_early = true;
-  EXPECT_THAT(summary(run),
-              EndsWith("\nFAIL 1 of 6 vectors failed (1 crash), 3 passed; 1 need --level exact, 1 do "
-                       "not apply to this port (px4-v1.5.5, exact, 2 rates) in 1.2 s; stopped "
-                       "early, the rest was not run\n"));
+  EXPECT_THAT(
+      summary(run),
+      EndsWith("\nFAIL 1 of 6 vectors failed (1 crash), 3 passed; 1 need --level exact, 1 do "
+               "not apply to this port (px4-v1.5.5, exact, 2 rates) in 1.2 s; stopped "
+               "early, the rest was not run\n"));
 }
 
 TEST(Summary, VectorsThatDoNotApplyAreCountedTogether) {
