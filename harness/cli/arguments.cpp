@@ -39,7 +39,7 @@ constexpr const char* footer =
     "  attest run ./libmine.so                        run all cases on your port\n"
     "  attest run --port lib:./libmine.so --level exact --filter 'attitude/*@250hz'\n"
     "  attest replay TRACE.csv --port lib:./libmine.so\n"
-    "  attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv\n"
+    "  attest sim hover ./libmine.so                  fly your port, and print the metrics\n"
     "  attest sim hover --rate 250:1000 --out f.csv   fly both units of v1.14 to v1.18\n"
     "  attest stress --port lib:./libmine.so          fly in real time, at 250 Hz to 8 kHz\n"
     "\n"

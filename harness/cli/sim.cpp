@@ -19,6 +19,7 @@
 #include "harness/loop/case_timing.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/flight_document.hpp"
+#include "harness/report/text.hpp"
 #include "harness/verify/fixed_step.hpp"
 #include "harness/verify/simulate.hpp"
 
@@ -213,6 +214,44 @@ void print(const VectorResult& result, const SimOptions& options, bool is_writte
   fmt::print(to, "{}", finding_text(result, Level::numeric));
 }
 
+// "1 of 3 metrics is out of its bounds: settles", or why the flight has no metrics.
+std::string metrics_sentence(const VectorResult& result) {
+  if (!result.reason.empty()) return one_line(result.reason);
+  std::vector<std::string> missed;
+  for (const MetricResult& metric : result.metrics) {
+    if (!metric.within()) missed.push_back(metric.name);
+  }
+  if (missed.empty()) return "the metrics are within their bounds";
+  return fmt::format("{} of {} {} out of {} bounds: {}", missed.size(),
+                     counted(result.metrics.size(), "metric"), missed.size() == 1 ? "is" : "are",
+                     missed.size() == 1 ? "its" : "their", fmt::join(missed, ", "));
+}
+
+// The last line. It names the flight whose verdict the document has. `is_reference`: the reference
+// flew, so there was no other flight to compare with.
+std::string verdict_line(const std::vector<SimulatedFlight>& flights, const Document& document,
+                         bool is_reference) {
+  const auto& shown = *std::ranges::find_if(flights, [&](const SimulatedFlight& flight) {
+    return flight.result.verdict == document.head.verdict;
+  });
+  std::string out =
+      fmt::format("{} {}", capitals(document.head.word), metrics_sentence(shown.result));
+  if (flights.size() > 1 && shown.result.verdict != Verdict::pass) {
+    out += fmt::format(" ({})", name_of(shown.result.plant_configuration->plant));
+  }
+  const auto deviates = [](const SimulatedFlight& flight) {
+    return flight.result.first.has_value();
+  };
+  const bool is_compared =
+      !is_reference && is_judged(shown.result.verdict) && shown.result.ticks > 0;
+  if (std::ranges::any_of(flights, deviates)) {
+    out += "; the outputs do not agree with the reference's, which `attest run` judges";
+  } else if (is_compared) {
+    out += "; the outputs agree with the reference's for the same inputs";
+  }
+  return out + "\n";
+}
+
 int sim_command(const SimOptions& options, const Globals& globals) {
   auto sim = prepare(options, globals);
   if (!sim) return report_error(sim.error());
@@ -243,6 +282,9 @@ int sim_command(const SimOptions& options, const Globals& globals) {
   if (any_shown) {
     for (const DocumentTable& table : document.tables) fmt::print(to, "{}", render_text(table, {}));
   }
+  if (any_shown && any_result) {
+    fmt::print(to, "{}", verdict_line(flights, document, host.port == HostOptions().port));
+  }
   if (!any_result) return report_error({"the port did not fly: no flight has a result"});
   return any_fails ? exit_failed : exit_ok;
 }
@@ -272,6 +314,7 @@ void add_sim(const CommandLine& line) {
       "Plant: `mujoco` or `ode`, or `all` for a page (--html) with the flights on "
       "both; default: the first plant of the case");
   add_port(command, options->host);
+  add_port_argument(command, options->host);
   command
       .option("--out", options->out,
               fmt::format("Write the trace as CSV, or in the format of the name's ending ({}); for "
@@ -283,8 +326,9 @@ void add_sim(const CommandLine& line) {
            "a page with plots of the flight and an animation of the attitude");
   add_timeout(command, options->host.timeout_s);
   command.examples({{"attest sim hover", "hover with the Iris on MuJoCo, and print the metrics"},
+                    {"attest sim hover ./libmine.so", "the same with a port"},
                     {"attest sim hover --rate 250 --port lib:./libmine.so --out flown.csv",
-                     "the same with a port, and write a trace"},
+                     "at another rate, and write a trace"},
                     {"attest sim gust --rate 500 --vehicle hexa --plant ode --out flown.csv",
                      "another vehicle and another plant"},
                     {"attest sim flip_150_level --rate 250 --html flight.html",

@@ -141,6 +141,7 @@ PORT
   run "$ATTEST" sim hover --rate 250 --port "lib:$PORTS/port_crash.so" --html page.html
   [ "$status" -eq 1 ]
   has "0 ticks -> page.html"
+  [[ ${lines[-1]} == "CRASH "* ]]
   grep -q "in step() at tick 20" page.html
 }
 
