@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -54,9 +55,19 @@ class HangWatch {
   std::string last_;
 };
 
+std::size_t flights_of(const RunPlan& plan) {
+  std::size_t flights = 0;
+  for (const SelectedCase& selected : plan.cases) {
+    flights += static_cast<std::size_t>(std::ranges::count_if(
+        selected.configurations,
+        [](const RunConfiguration& one) { return one.plant_configuration.has_value(); }));
+  }
+  return flights;
+}
+
 // Runs the vectors, until an interrupt or until the port seems to hang.
 void run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
-  Progress progress(plan.run.selected, Progress::on_stderr(globals.quiet));
+  Progress progress(plan.run.selected, Progress::on_stderr(globals.quiet), 0, flights_of(plan));
   JobOptions<VectorResult> jobs;
   jobs.processes = options.jobs;
   jobs.in_process = options.host.in_process;

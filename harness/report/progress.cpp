@@ -30,16 +30,27 @@ Progress::Options Progress::on_stderr(bool quiet) {
 }
 
 void Progress::add(const VectorResult& result, Clock::time_point now) {
-  add(fails_a_run(result.verdict), result.id(), now);
+  add(result.plant_configuration ? flight : other, result.elapsed_s, fails_a_run(result.verdict),
+      result.id(), now);
 }
 
 void Progress::add(bool failed, const std::string& latest, Clock::time_point now) {
+  add(other, 1, failed, latest, now);
+}
+
+void Progress::add(KindOfResult kind_of_result, double cost, bool failed, const std::string& latest,
+                   Clock::time_point now) {
+  Kind& kind = kinds_[kind_of_result];
+  kind.left -= std::min<std::size_t>(kind.left, 1);
   ++done_;
   if (failed) ++failed_;
   if (begin_ == Clock::time_point{}) {
     begin_ = now;
     done_before_ = done_;
     latest_ = now;
+  } else {
+    ++kind.done;
+    kind.cost += cost;
   }
   if (options_.form == Form::drawn && (!drawn_ || now - latest_ >= redraw_interval)) {
     draw(latest, now);
@@ -62,10 +73,23 @@ std::string Progress::speed(Clock::time_point now) const {
   const double seconds = std::chrono::duration<double>(now - begin_).count();
   if (done_ == done_before_ || !(seconds > 0) || done_ > total_) return "";
   const double rate = static_cast<double>(done_ - done_before_) / seconds;
-  const double left = static_cast<double>(total_ - done_) / rate;
+  const std::optional<double> left = seconds_left(seconds);
+  if (!left) return fmt::format(", {:.3g}/s", rate);
   constexpr double long_s = 120;
-  return left > long_s ? fmt::format(", {:.3g}/s, {:.0f} min left", rate, left / 60)
-                       : fmt::format(", {:.3g}/s, {:.0f} s left", rate, left);
+  return *left > long_s ? fmt::format(", {:.3g}/s, {:.0f} min left", rate, *left / 60)
+                        : fmt::format(", {:.3g}/s, {:.0f} s left", rate, *left);
+}
+
+std::optional<double> Progress::seconds_left(double seconds) const {
+  double done = 0, left = 0;
+  for (const Kind& kind : kinds_) {
+    done += kind.cost;
+    if (kind.left == 0) continue;
+    if (kind.done == 0) return std::nullopt;
+    left += static_cast<double>(kind.left) * kind.cost / static_cast<double>(kind.done);
+  }
+  if (!(done > 0)) return std::nullopt;
+  return seconds * left / done;
 }
 
 void Progress::draw(const std::string& latest, Clock::time_point now) const {

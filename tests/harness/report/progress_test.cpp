@@ -71,6 +71,20 @@ TEST_F(ProgressTest, TellsTheSpeedAndTheRemainingTime) {
   EXPECT_THAT(written(), HasSubstr(" 411/1000, 1/s, 10 min left  sample 7"));
 }
 
+// Flights take longer than other vectors, and are run last.
+TEST_F(ProgressTest, KnowsNoRemainingTimeBeforeTheFirstFlight) {
+  Progress progress(120, visible(), 0, 20);
+  result_.elapsed_s = 0.1;
+  auto now = start_;
+  for (int i = 0; i < 100; ++i, now += milliseconds(100)) progress.add(result_, now);
+  EXPECT_THAT(written(), HasSubstr(" 100/120, 10/s  "));
+  EXPECT_THAT(written(), testing::Not(HasSubstr("left")));
+  result_.plant_configuration.emplace();
+  result_.elapsed_s = 2;
+  for (int i = 0; i < 2; ++i, now += milliseconds(2000)) progress.add(result_, now);
+  EXPECT_THAT(written(), HasSubstr(" 102/120, 8.42/s, 31 s left  "));
+}
+
 TEST_F(ProgressTest, CountsFailures) {
   result_.verdict = Verdict::crash;
   Progress progress(1, visible());
