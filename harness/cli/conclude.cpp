@@ -51,6 +51,7 @@ int exit_code(const RunResult& run) {
   const Conclusion conclusion = conclusion_of(run);
   if (conclusion == Conclusion::pass) return exit_ok;
   if (conclusion == Conclusion::fail) return exit_failed;
+  if (conclusion == Conclusion::stopped) return exit_usage;
   if (run.count(Verdict::xfail) > 0) {
     return report_error(
         {"no vector passed: every selected vector was an expected failure, skipped or "

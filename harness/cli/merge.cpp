@@ -192,6 +192,7 @@ RunResult merged(std::vector<Part> parts) {
     run.selected += part.selected;
     run.all_configurations = run.all_configurations && part.all_configurations;
     run.stopped_early = run.stopped_early || part.stopped_early;
+    std::move(part.not_run.begin(), part.not_run.end(), std::back_inserter(run.not_run));
   }
   std::sort(run.rates.begin(), run.rates.end());
   run.rates.erase(std::unique(run.rates.begin(), run.rates.end()), run.rates.end());

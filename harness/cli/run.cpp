@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <chrono>
+#include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -55,6 +58,27 @@ class HangWatch {
   std::string last_;
 };
 
+std::vector<NotRun> not_run(const RunPlan& plan) {
+  std::set<std::string> done;
+  for (const VectorResult& result : plan.run.results) done.insert(result.id());
+  std::vector<NotRun> left;
+  for (const SelectedCase& selected : plan.cases) {
+    const Case& the_case = selected.the_case;
+    for (const RunConfiguration& one : selected.configurations) {
+      if (done.contains(the_case.id_at(one))) continue;
+      const auto known = std::ranges::find_if(left, [&](const NotRun& other) {
+        return other.profile == the_case.profile && other.group == the_case.group &&
+               other.rate == one.rate;
+      });
+      if (known == left.end())
+        left.push_back({the_case.profile, the_case.group, one.rate, 1});
+      else
+        ++known->vectors;
+    }
+  }
+  return left;
+}
+
 std::size_t flights_of(const RunPlan& plan) {
   std::size_t flights = 0;
   for (const SelectedCase& selected : plan.cases) {
@@ -94,6 +118,7 @@ void run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
   });
   run.errors = std::move(outcome.errors);
   run.stopped_early = outcome.stopped_early || watch.hangs() || interrupted();
+  if (run.stopped_early) run.not_run = not_run(plan);
   if (auto same = check_port(plan.host); !same) run.errors.push_back(same.error());
 }
 

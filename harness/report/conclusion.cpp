@@ -94,6 +94,7 @@ std::string suspects_text(const Diagnosis& diagnosis) {
 
 Conclusion conclusion_of(const RunResult& run) {
   if (run.failed() || !run.errors.empty()) return Conclusion::fail;
+  if (run.stopped_early) return Conclusion::stopped;
   return run.count(Verdict::pass) > 0 ? Conclusion::pass : Conclusion::none;
 }
 
@@ -120,7 +121,10 @@ std::string conclusion_text(const RunResult& run, std::string_view duration) {
   const std::string apart = counted_apart(run);
   if (!apart.empty()) out += "; " + apart;
   out += fmt::format(" ({}){}", setting(run), duration);
-  if (run.stopped_early) out += "; stopped early, the rest was not run";
+  if (run.stopped_early) {
+    const std::size_t left = run.selected - std::min(run.selected, run.results.size());
+    out += fmt::format("; stopped early, {} of {} not run", left, counted(run.selected, "vector"));
+  }
   return out;
 }
 

@@ -9,7 +9,8 @@
 
 namespace attest {
 
-// fail: a vector failed, or an error occurred. pass: at least one vector passed. none: all others.
+// fail: a vector failed, or an error occurred. stopped: it was not run to its end. pass: at least
+// one vector passed. none: all others.
 Conclusion conclusion_of(const RunResult& run);
 
 // Why a vector that was not judged does not apply to the port: "it has no module mixer (extension

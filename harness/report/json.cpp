@@ -59,6 +59,17 @@ ordered_json results(const RunResult& run) {
   return out;
 }
 
+ordered_json not_run(const RunResult& run) {
+  ordered_json out = ordered_json::array();
+  for (const NotRun& left : run.not_run) {
+    out.push_back({{"profile", left.profile},
+                   {"group", left.group},
+                   {"rate", left.rate.to_string()},
+                   {"vectors", left.vectors}});
+  }
+  return out;
+}
+
 // Which vectors were selected, and with which parameters and timing.
 ordered_json selection(const RunResult& run) {
   ordered_json parameters = ordered_json::array();
@@ -177,6 +188,7 @@ std::string json_report(const RunResult& run, const std::optional<Diagnosis>& fo
       {"errors", errors(run)},
       {"results", results(run)},
   };
+  if (!run.not_run.empty()) report["not_run"] = not_run(run);
   if (found) report["diagnosis"] = diagnosis(*found);
   return document_of(report);
 }

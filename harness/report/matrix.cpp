@@ -40,12 +40,34 @@ std::string headroom_text(const Together& results) {
                                                : fmt::format("{:.0f}", smallest));
 }
 
-// The cell of the results of a profile for which `wanted` is true.
+// The results of a table, and a result without a verdict for each group and rate of which vectors
+// were left out when the run was stopped.
+struct Content {
+  Together results;
+  std::vector<VectorResult> left_out;
+};
+
+Content content_of(const RunResult& run, Together results) {
+  Content content{std::move(results), {}};
+  for (const NotRun& left : run.not_run) {
+    const bool is_in_table = std::ranges::any_of(content.results, [&](const VectorResult* result) {
+      return result->profile == left.profile;
+    });
+    if (!is_in_table) continue;
+    VectorResult& one = content.left_out.emplace_back();
+    one.profile = left.profile;
+    one.group = left.group;
+    one.rate = left.rate;
+  }
+  return content;
+}
+
+// The cell of the results for which `wanted` is true.
 template <typename Wanted>
-Cell cell_of(const Together& all, Wanted wanted) {
+Cell cell_of(const Content& content, Wanted wanted) {
   Together results;
   std::size_t passed = 0, failed = 0;
-  for (const VectorResult* result : all) {
+  for (const VectorResult* result : content.results) {
     if (!wanted(*result)) continue;
     results.push_back(result);
     passed += result->verdict == Verdict::pass ? 1 : 0;
@@ -53,9 +75,11 @@ Cell cell_of(const Together& all, Wanted wanted) {
   }
   if (results.empty()) return "-";
   const std::size_t apart = results.size() - passed - failed;
-  return {fmt::format("{}{}{}", passed, failed > 0 ? fmt::format("/{}", passed + failed) : "",
-                      apart > 0 ? fmt::format("+{}", apart) : ""),
-          gravest(results), headroom_text(results)};
+  const bool is_stopped = std::ranges::any_of(content.left_out, wanted);
+  return {fmt::format("{}{}{}{}", passed, failed > 0 ? fmt::format("/{}", passed + failed) : "",
+                      apart > 0 ? fmt::format("+{}", apart) : "", is_stopped ? "*" : ""),
+          is_stopped && failed == 0 ? verdict_of(Conclusion::stopped) : gravest(results),
+          headroom_text(results)};
 }
 
 // The results that belong to a column, and its header.
@@ -67,10 +91,10 @@ struct Column {
 
 // A table with a row for each group, a column for each key, and the sums. `key_of`: of a result.
 template <typename Key, typename KeyOf>
-DocumentTable table_of(const Together& results, std::string title,
+DocumentTable table_of(const Content& content, std::string title,
                        const std::vector<Column<Key>>& columns, KeyOf key_of) {
   std::vector<std::string> groups;
-  for (const VectorResult* result : results) {
+  for (const VectorResult* result : content.results) {
     if (std::ranges::find(groups, result->group) == groups.end()) groups.push_back(result->group);
   }
   DocumentTable table{std::move(title), {"group"}};
@@ -79,11 +103,15 @@ DocumentTable table_of(const Together& results, std::string title,
   const auto add_row = [&](const std::string& name, auto is_in_row) {
     std::vector<Cell> row = {name};
     for (const Column<Key>& column : columns) {
-      row.push_back(cell_of(results, [&](const VectorResult& result) {
+      row.push_back(cell_of(content, [&](const VectorResult& result) {
         return is_in_row(result) && key_of(result) == column.key;
       }));
     }
-    row.push_back(cell_of(results, is_in_row));
+    row.push_back(cell_of(content, is_in_row));
+    if (row.back().text.ends_with('*')) {
+      row.back().text.back() = ' ';
+      row.back().text += capitals(name_of(Conclusion::stopped));
+    }
     table.rows.push_back(std::move(row));
   };
   for (const std::string& group : groups) {
@@ -93,12 +121,13 @@ DocumentTable table_of(const Together& results, std::string title,
   return table;
 }
 
-DocumentTable matrix_of(const Together& results) {
+DocumentTable matrix_of(const Content& content) {
   std::set<LoopRate> rates;
-  for (const VectorResult* result : results) rates.insert(result->rate);
+  for (const VectorResult* result : content.results) rates.insert(result->rate);
   std::vector<Column<LoopRate>> columns;
   for (const LoopRate& rate : rates) columns.push_back({rate.to_string(), rate});
-  return table_of(results, one_line(results.front()->profile) + ": vectors by group and rate [Hz]",
+  return table_of(content,
+                  one_line(content.results.front()->profile) + ": vectors by group and rate [Hz]",
                   columns, [](const VectorResult& result) { return result.rate; });
 }
 
@@ -121,7 +150,7 @@ std::vector<DocumentTable> matrices_of(const RunResult& run) {
   std::stable_partition(profiles.begin(), profiles.end(),
                         [](const auto& profile) { return fails_a_run(gravest(profile)); });
   std::vector<DocumentTable> tables;
-  for (const auto& profile : profiles) tables.push_back(matrix_of(profile));
+  for (auto& profile : profiles) tables.push_back(matrix_of(content_of(run, std::move(profile))));
   return tables;
 }
 
@@ -133,7 +162,7 @@ DocumentTable matrix_by_profile(const RunResult& run) {
     columns.push_back({one_line(name), name});
     results.insert(results.end(), profile.begin(), profile.end());
   }
-  return table_of(results, "vectors by group and profile", columns,
+  return table_of(content_of(run, std::move(results)), "vectors by group and profile", columns,
                   [](const VectorResult& result) { return result.profile; });
 }
 

@@ -42,9 +42,10 @@ std::vector<Together> grouped(const RunResult& run, Wanted wanted, Equal equal) 
 //       total      17+1  16/18       6  39/42+1
 //
 // "10/12": two of twelve failed; "5+1": one more was counted apart (unsupported, skip, xfail); "-":
-// no result. The verdict of a cell is the gravest one; vectors that were not judged count less than
-// those that passed. `small` is the smallest headroom, as in "3.1×"; empty: no passed vector
-// differs in bits.
+// no result; "5*" and in the last column "17 STOPPED": the run ended before all its vectors were
+// run, so the cell is not one of a pass. The verdict of a cell is the gravest one; vectors that
+// were not judged count less than those that passed. `small` is the smallest headroom, as in
+// "3.1×"; empty: no passed vector differs in bits.
 std::vector<DocumentTable> matrices_of(const RunResult& run);
 
 // The same for the whole run: a column for each profile, all its rates together.

@@ -216,6 +216,16 @@ void read_results(JsonReader& reader, RunResult& run) {
   }
 }
 
+void read_not_run(JsonReader& reader, std::string& error, RunResult& run) {
+  if (!reader.has("not_run")) return;
+  for (const json& one : reader.list("not_run")) {
+    JsonReader left(one, error);
+    const std::string rate = left.text("rate");
+    run.not_run.push_back({left.text("profile"), left.text("group"), rate_from(left, rate),
+                           static_cast<std::size_t>(left.count("vectors"))});
+  }
+}
+
 // Errors: the totals are not those of the results, or the number of results contradicts the number
 // of selected vectors.
 void check_numbers(JsonReader reader, JsonReader totals, const RunResult& run) {
@@ -276,6 +286,7 @@ Result<ReadReport> read_report(const std::string& path) {
   read_limits(reader.object("limits"), run);
   read_selection(reader.object("selection"), run);
   read_results(reader, run);
+  read_not_run(reader, error, run);
   if (error.empty()) check_numbers(reader, reader.object("totals"), run);
   if (!error.empty()) return fail_at(path, error);
   return run;

@@ -8,6 +8,7 @@
 #include <pugixml.hpp>
 
 #include "harness/port/profiles.hpp"
+#include "harness/report/conclusion.hpp"
 #include "harness/report/text.hpp"
 #include "harness/verify/claim.hpp"
 
@@ -171,10 +172,12 @@ std::string conformance_statement(const RunResult& run) {
 }
 
 std::string badge(const RunResult& run) {
-  const Standing standing = standing_of(run);
+  const bool is_stopped = conclusion_of(run) == Conclusion::stopped;
+  const Standing standing = is_stopped ? Standing::partial : standing_of(run);
   const std::string left = "attest";
-  const std::string right =
-      standing == Standing::none ? "does not conform" : on_the_badge(run, standing);
+  const std::string right = is_stopped                   ? std::string(name_of(Conclusion::stopped))
+                            : standing == Standing::none ? "does not conform"
+                                                         : on_the_badge(run, standing);
   const auto width = [](const std::string& text) { return 7 * static_cast<int>(text.size()) + 10; };
   const int left_width = width(left), right_width = width(right);
   pugi::xml_document document;

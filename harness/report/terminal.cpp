@@ -280,8 +280,11 @@ std::string matrices(const RunResult& run, TerminalStyle style, bool verbose) {
     }
     out += render_text(table, style) + "\n";
   }
-  const bool is_plain = run.count(Verdict::pass) == run.results.size();
-  return is_plain ? out : out + "n/m: n of m vectors passed; +k: k counted apart\n\n";
+  const bool is_plain = run.count(Verdict::pass) == run.results.size() && run.not_run.empty();
+  return is_plain
+             ? out
+             : out + fmt::format("n/m: n of m vectors passed; +k: k counted apart{}\n\n",
+                                 run.not_run.empty() ? "" : "; *: stopped before all were run");
 }
 
 std::string accuracy(const RunResult& run, TerminalStyle style) {

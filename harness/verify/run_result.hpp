@@ -24,6 +24,13 @@ struct Limits {
   BarrierParts barrier;           // that the kernel had
 };
 
+// Vectors that were selected, but not run.
+struct NotRun {
+  std::string profile, group;
+  LoopRate rate;
+  std::size_t vectors = 0;
+};
+
 // The results are in the order of the cases, for any number of jobs.
 struct RunResult {
   std::string attest_version;
@@ -59,8 +66,9 @@ struct RunResult {
   Limits limits;                        // of the port
   std::string date;                     // of the run, UTC: "2026-03-31"
   std::vector<VectorResult> results;
-  std::vector<Error> errors;   // of the environment, such as a golden that cannot be read
-  bool stopped_early = false;  // vectors were left out, for example after --fail-fast
+  std::vector<Error> errors;    // of the environment, such as a golden that cannot be read
+  bool stopped_early = false;   // vectors were left out, for example after --fail-fast
+  std::vector<NotRun> not_run;  // then: the vectors that were left out
 
   // The options that selected vectors: "--group tpa --shard 2/4"; empty: all were selected.
   std::string selection_text() const;

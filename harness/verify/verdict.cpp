@@ -32,8 +32,8 @@ constexpr std::array<VerdictWord, verdict_count> verdicts{{
 const VerdictWord& word_of(Verdict verdict) { return verdicts[static_cast<std::size_t>(verdict)]; }
 
 // In the orders of Conclusion and RowVerdict.
-constexpr std::array<std::string_view, conclusion_count> conclusions{"pass", "fail", "partial",
-                                                                     "none", "measured"};
+constexpr std::array<std::string_view, conclusion_count> conclusions{"pass", "fail",     "partial",
+                                                                     "none", "measured", "stopped"};
 constexpr std::array<std::string_view, row_verdict_count> row_verdicts{
     "agrees", "differs", "within", "missed", "not judged"};
 

@@ -48,8 +48,9 @@ enum class Conclusion {
   partial,   // some rates passed, and the others were not judged
   none,      // no vector passed, and none failed
   measured,  // the command had no bound to judge by
+  stopped,   // the run ended before all vectors were run, and no vector failed
 };
-inline constexpr int conclusion_count = 5;
+inline constexpr int conclusion_count = 6;
 std::string_view name_of(Conclusion conclusion);
 Verdict verdict_of(Conclusion conclusion);  // the verdict with the same colour and symbol
 Conclusion conclusion_of(Verdict verdict);  // pass, fail or none

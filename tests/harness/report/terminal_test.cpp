@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "harness/report/report.hpp"
+#include "harness/report/statement.hpp"
 #include "tests/harness/report/baseline.hpp"
 #include "tests/harness/report/sample_run.hpp"
 
@@ -49,11 +51,32 @@ TEST(Summary, TheLastLineIsTheConformanceStatement) {
                                       "not apply to this port (px4-v1.5.5, "));
   run.results[2].verdict = Verdict::crash;
   run.stopped_early = true;
+  run.selected = 8;
   EXPECT_THAT(
       summary(run),
       EndsWith("\nFAIL 1 of 6 vectors failed (1 crash), 3 passed; 1 need --level exact, 1 do "
                "not apply to this port (px4-v1.5.5, exact, 2 rates) in 1.2 s; stopped "
-               "early, the rest was not run\n"));
+               "early, 2 of 8 vectors not run\n"));
+}
+
+// No cell of a group of which vectors were left out is one of a pass, nor is the badge green.
+TEST(Summary, ARunThatWasStoppedIsNoPass) {
+  RunResult run = passing_run();
+  run.stopped_early = true;
+  run.selected = 9;
+  const VectorResult& one = run.results.front();
+  run.not_run = {{one.profile, one.group, one.rate, 3}};
+  const std::string text = summary(run);
+  EXPECT_THAT(text, HasSubstr("\nSTOPPED 6 vectors passed, 0 failed (px4-v1.5.5, exact, 2 rates)"));
+  EXPECT_THAT(text, EndsWith("; stopped early, 3 of 9 vectors not run\n"));
+  EXPECT_THAT(text, testing::ContainsRegex("\n  attitude +[0-9]+[*] +[0-9]+ +[0-9]+ STOPPED\n"));
+  EXPECT_THAT(text, HasSubstr("*: stopped before all were run"));
+  EXPECT_THAT(badge(run), HasSubstr(">stopped<"));
+  EXPECT_THAT(badge(run), Not(HasSubstr("#3a7d34")));
+  EXPECT_THAT(junit_report(run), HasSubstr("3 vectors not run: the run was stopped"));
+  EXPECT_THAT(json_report(run), HasSubstr("\"not_run\""));
+  run.results.front().verdict = Verdict::fail;
+  EXPECT_THAT(summary(run), HasSubstr("\nFAIL 1 of 6 vectors failed, 5 passed"));
 }
 
 TEST(Summary, VectorsThatDoNotApplyAreCountedTogether) {
@@ -195,8 +218,9 @@ TEST(Summary, SeveralProfilesShareATable) {
 }
 
 TEST(Summary, CountsTheStagesThatDifferFirst) {
-  EXPECT_THAT(summary(sample_run()),
-              HasSubstr("\nfirst stage to differ: attitude law in 5, rate law in 1, "));
+  EXPECT_THAT(
+      summary(sample_run()),
+      HasSubstr("\nfirst stage to differ: attitude law in 5 vectors, rate law in 1 vector, "));
 }
 
 TEST(Summary, ReasonsOfWhatIsCountedApartAreAggregated) {
