@@ -42,7 +42,6 @@ std::optional<Diagnosis> diagnosed(const RunResult& run, const Examined& examine
   if (!interrupted()) return diagnosis;
   // This diagnosis used only some of the vectors. The verdicts are complete.
   fmt::print(stderr, "attest: interrupted; the reports do not have the probable mistake\n");
-  forget_interrupt();
   return std::nullopt;
 }
 
@@ -99,6 +98,8 @@ int conclude(const RunResult& run, const Examined& examined, const ReportOptions
   } else if (options.diagnose && run.failed()) {
     diagnosis = diagnosed(run, examined);
   }
+  if (examined.save_traces) examined.save_traces(diagnosis ? diagnosis->specific_case : "");
+  if (interrupted()) forget_interrupt();
   // Before the summary is printed: if the reader of stdout closes the pipe early, SIGPIPE ends this
   // process.
   const auto written = write_reports(reports, {run, diagnosis, examined.traces});

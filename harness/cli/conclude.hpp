@@ -3,6 +3,8 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "harness/casefile/select.hpp"
@@ -27,6 +29,9 @@ struct Examined {
   const HostOptions& host;
   int jobs = 1;
   std::filesystem::path traces;  // as Report::traces
+  // Called before the reports are written, with the case that the diagnosis names, or an empty
+  // text. May be empty.
+  std::function<void(const std::string& named)> save_traces = {};
 };
 
 // `run` has all results. Prints errors on stderr, the summary on stdout, and writes the reports.

@@ -35,10 +35,10 @@ RunOptions PlottedTraces::planned(RunOptions options) const {
   return options;
 }
 
-void PlottedTraces::save(const RunPlan& plan, const SuiteFolder& suite,
-                         const RunOptions& options) const {
+void PlottedTraces::save(const RunPlan& plan, const SuiteFolder& suite, const RunOptions& options,
+                         const std::string& named) const {
   std::set<std::string> ids;
-  for (const VectorResult* result : vectors_to_plot(plan.run)) ids.insert(result->id());
+  for (const VectorResult* result : vectors_to_plot(plan.run, named)) ids.insert(result->id());
   if (!temporary_ || !options.timing.empty() || ids.empty()) return;
   VehicleModels vehicle_models(suite.models());
   const auto jobs = case_jobs(

@@ -25,10 +25,11 @@ class PlottedTraces {
   // `options` with the change that the flight of --timing saves its traces during the run.
   RunOptions planned(RunOptions options) const;
 
-  // Call it after the run `plan.run`. Unless the run itself saved traces in the folder, runs
-  // vectors_to_plot() once more and saves their traces. The first error is printed. A vector
-  // without traces has no plot in the report.
-  void save(const RunPlan& plan, const SuiteFolder& suite, const RunOptions& options) const;
+  // Call it after the run `plan.run`. `named`: as for vectors_to_plot(). Unless the run itself
+  // saved traces in the folder, runs vectors_to_plot() once more and saves their traces. The first
+  // error is printed. A vector without traces has no plot in the report.
+  void save(const RunPlan& plan, const SuiteFolder& suite, const RunOptions& options,
+            const std::string& named) const;
 
  private:
   std::optional<TemporaryFolder> temporary_;

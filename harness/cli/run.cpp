@@ -162,13 +162,15 @@ int run_command(const RunOptions& given, const Globals& globals) {
                            !run.stopped_early && run.errors.empty();
   if (plan->expected) plan->expected->apply(is_complete, run);
   remember_last_run(run);
-  traces->save(*plan, *suite, options);
   if (!options.save_traces.empty() && run.failed()) {
     fmt::print(stderr, "attest: note: the traces of the failing vectors are in {}\n",
                options.save_traces);
   }
-  return conclude(run, {plan->cases, plan->host, options.jobs, traces->folder()}, options.report,
-                  *std::move(reports), begin, globals);
+  const auto save_traces = [&](const std::string& named) {
+    traces->save(*plan, *suite, options, named);
+  };
+  return conclude(run, {plan->cases, plan->host, options.jobs, traces->folder(), save_traces},
+                  options.report, *std::move(reports), begin, globals);
 }
 
 void add_strictness(Command command, RunOptions& options) {

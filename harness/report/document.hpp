@@ -192,6 +192,7 @@ struct Document {
   // that can be searched. Its tables select rows of this list, and html_report() adds the plots.
   std::optional<std::vector<std::vector<Cell>>> results = {};
   std::map<std::string, std::string> whys = {};  // "profile/group/name" -> what the case tests
+  std::string first_case = {};  // "profile/group/name" of the case to open first; may be empty
 };
 
 // "8.13 us", "1.02 ms", "312 ns".

@@ -235,6 +235,7 @@ std::string html_page(const Document& document) {
     out.set("verdicts", verdicts());
     out.set("results", list_of(*document.results, result_to_data));
     set_text(out, "whys", script_json(nlohmann::json(document.whys)));
+    set_text(out, "first_case", document.first_case);
   } else {
     set_text(out, "plots", plot_data_json(document));
   }

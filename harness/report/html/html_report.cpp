@@ -105,7 +105,9 @@ void add_failure(const VectorResult& result, const RunResult& run, std::vector<C
 }
 
 std::vector<Cell> row_of(const VectorResult& result, const RunResult& run) {
-  const auto& tightest = result.tightest;
+  // In a vector that fails, the headroom of the other outputs means nothing.
+  const bool passed = result.verdict == Verdict::pass || result.verdict == Verdict::xpass;
+  const auto tightest = passed ? result.tightest : std::nullopt;
   const bool is_explained = result.verdict == Verdict::pass || result.first;
   std::vector<Cell> row = {{std::string(name_of(result.verdict)), result.verdict},
                            result.profile + "/" + result.group,
@@ -136,6 +138,7 @@ Document run_document(const Report& report) {
   if (auto accuracy = accuracy_of(run)) document.tables.push_back(*std::move(accuracy));
   document.results.emplace();
   document.whys = run.whys;
+  if (report.diagnosis) document.first_case = report.diagnosis->specific_case;
   for (const VectorResult& result : run.results) document.results->push_back(row_of(result, run));
   return document;
 }
@@ -149,7 +152,8 @@ std::string html_report(const Report& report) {
   std::string page = html_page(run_document(report));
   const std::size_t left = most_page_bytes - std::min(most_page_bytes, page.size());
   page.insert(page.rfind(begin_of_plots) + begin_of_plots.size(),
-              plots_json(report.run, report.traces, left));
+              plots_json(report.run, report.traces, left,
+                         report.diagnosis ? report.diagnosis->specific_case : ""));
   return page;
 }
 

@@ -153,12 +153,19 @@ std::vector<std::size_t> drawn_ticks(const Curves& curves, std::size_t marked, s
   return kept;
 }
 
-std::vector<const VectorResult*> vectors_to_plot(const RunResult& run, std::size_t most) {
+std::vector<const VectorResult*> vectors_to_plot(const RunResult& run, const std::string& named,
+                                                 std::size_t most) {
   using Candidate = std::pair<std::size_t, const VectorResult*>;  // rates of its group before it
   std::map<std::pair<std::string, std::string>, std::vector<LoopRate>> seen;
   std::vector<Candidate> candidates;
+  bool has_named = false;
   for (const VectorResult& result : run.results) {
     if (!fails_a_run(result.verdict) || !result.first) continue;
+    if (!has_named && result.case_id() == named) {
+      candidates.emplace(candidates.begin(), 0, &result);
+      has_named = true;
+      continue;
+    }
     std::vector<LoopRate>& rates = seen[{result.profile, result.group}];
     if (std::find(rates.begin(), rates.end(), result.rate) != rates.end()) continue;
     candidates.emplace_back(rates.size(), &result);
@@ -174,10 +181,10 @@ std::vector<const VectorResult*> vectors_to_plot(const RunResult& run, std::size
 }
 
 std::string plots_json(const RunResult& run, const std::filesystem::path& folder,
-                       std::size_t most_bytes) {
+                       std::size_t most_bytes, const std::string& named) {
   if (folder.empty()) return "{}";
   std::string out = "{";
-  for (const VectorResult* result : vectors_to_plot(run)) {
+  for (const VectorResult* result : vectors_to_plot(run, named)) {
     const auto traces =
         read_traces(trace_files(folder, *result, channels()[result->first->channel].module));
     if (!traces || traces->got.samples.empty()) continue;

@@ -37,8 +37,10 @@ inline constexpr std::size_t most_plotted_vectors = 100;
 // The failing vectors that the page plots, in the order of the results: of each group, the first
 // failing vector at each rate. If these are more than `most`, the first rates of every group are
 // taken before the further ones. A vector without a first deviation (a crash, a metric of a flight)
-// is left out.
+// is left out. `named`: the case that the report names; its first failing vector is taken before
+// all others.
 std::vector<const VectorResult*> vectors_to_plot(const RunResult& run,
+                                                 const std::string& named = {},
                                                  std::size_t most = most_plotted_vectors);
 
 // Reads the traces of vectors_to_plot() in `folder` (saved_traces.hpp). A vector without traces in
@@ -57,6 +59,6 @@ std::vector<const VectorResult*> vectors_to_plot(const RunResult& run,
 // traces do not have the first deviation of the result: then the port gave other outputs when it
 // ran again for its traces. `hidden` is the number of deviating signals that are not plotted.
 std::string plots_json(const RunResult& run, const std::filesystem::path& folder,
-                       std::size_t most_bytes);
+                       std::size_t most_bytes, const std::string& named = {});
 
 }  // namespace attest

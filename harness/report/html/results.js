@@ -278,12 +278,19 @@
   };
   const usualStage = commonStage();
 
-  // A typical failure among the shown rows: one with plots, and of the usual stage, if there is
-  // one.
+  // Among the shown rows, a failure with plots, if there is one: of the case that the report names,
+  // or else of the usual stage.
+  const isOfFirstCase = (row) => `${row.group}/${row.name}` === table.dataset.first;
   const firstToShow = () => {
     const failed = shown.filter((row) => failing.has(row.verdict));
     const plotted = failed.filter((row) => attest.plotsOf(row.id));
-    return plotted.find((row) => row.stage === usualStage) ?? plotted[0] ?? failed[0];
+    return (
+      plotted.find(isOfFirstCase) ??
+      plotted.find((row) => row.stage === usualStage) ??
+      plotted[0] ??
+      failed.find(isOfFirstCase) ??
+      failed[0]
+    );
   };
 
   const makeClickable = (cell) => {

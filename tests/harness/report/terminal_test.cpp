@@ -36,19 +36,21 @@ TEST(Summary, WithoutColourHasNoEscapeCodes) {
 
 TEST(Summary, TheLastLineIsTheConformanceStatement) {
   RunResult run = passing_run();
-  EXPECT_THAT(summary(run),
-              EndsWith("\nPASS 6 passed, 0 failed (px4-v1.5.5, exact, 2 rates) in 1.2 s\n"));
+  EXPECT_THAT(
+      summary(run),
+      EndsWith("\nPASS 6 vectors passed, 0 failed (px4-v1.5.5, exact, 2 rates) in 1.2 s\n"));
   run.results[0].verdict = Verdict::skip;
   run.results[1].verdict = Verdict::xfail;
   EXPECT_THAT(summary(run),
-              EndsWith("\nPASS 4 passed, 0 failed; 1 skip, 1 xfail (px4-v1.5.5, exact, 2 "
+              EndsWith("\nPASS 4 vectors passed, 0 failed; 1 skip, 1 xfail (px4-v1.5.5, exact, 2 "
                        "rates) in 1.2 s\n"));
   run.results[0].exact_only = true;
   run.results[1].verdict = Verdict::unsupported;
   run.results[1].reason =
       "does not apply to this port: it has no module rate_law (extension attest.rate_law.v1)";
-  EXPECT_THAT(summary(run), HasSubstr("\nPASS 4 passed, 0 failed; 1 need --level exact, 1 do "
-                                      "not apply to this port (px4-v1.5.5, "));
+  EXPECT_THAT(summary(run),
+              HasSubstr("\nPASS 4 vectors passed, 0 failed; 1 need --level exact, 1 do "
+                        "not apply to this port (px4-v1.5.5, "));
   run.results[2].verdict = Verdict::crash;
   run.stopped_early = true;
   run.selected = 8;
@@ -136,11 +138,11 @@ TEST(Summary, EqualErrorsAreShownOnceAndAtMostTwenty) {
 TEST(Summary, NothingThatPassedIsNoPass) {
   RunResult run = passing_run();
   for (VectorResult& result : run.results) result.verdict = Verdict::unsupported;
-  EXPECT_THAT(summary(run), HasSubstr("\nNONE 0 passed, 0 failed; 6 unsupported"));
+  EXPECT_THAT(summary(run), HasSubstr("\nNONE 0 vectors passed, 0 failed; 6 unsupported"));
   run.results[0].verdict = Verdict::xfail;
-  EXPECT_THAT(summary(run), HasSubstr("\nNONE 0 passed, 0 failed; 1 xfail, 5 unsupported"));
+  EXPECT_THAT(summary(run), HasSubstr("\nNONE 0 vectors passed, 0 failed; 1 xfail, 5 unsupported"));
   run.results.clear();
-  EXPECT_THAT(summary(run), HasSubstr("\nNONE 0 passed, 0 failed (exact, 2 rates)"));
+  EXPECT_THAT(summary(run), HasSubstr("\nNONE 0 vectors passed, 0 failed (exact, 2 rates)"));
 }
 
 TEST(Summary, ACaseThatFailsEquallyAtSeveralRatesIsShownOnce) {

@@ -44,14 +44,23 @@ TEST(VectorsToPlot, AreTheFirstFailureOfEachGroupAndRate) {
                           "px4-v1.5.5/tpa/d@500hz"));
 }
 
+TEST(VectorsToPlot, TheNamedCaseIsTheFirstToBeTaken) {
+  RunResult run;
+  run.results = {failed("attitude", "a", 250), failed("attitude", "b", 250),
+                 failed("attitude", "b", 500), failed("tpa", "c", 250)};
+  EXPECT_THAT(ids(vectors_to_plot(run, "px4-v1.5.5/attitude/b", 1)),
+              ElementsAre("px4-v1.5.5/attitude/b@250hz"));
+  EXPECT_THAT(ids(vectors_to_plot(run, "px4-v1.5.5/attitude/b")), testing::SizeIs(4));
+}
+
 TEST(VectorsToPlot, EveryGroupHasOneBeforeAGroupHasTwo) {
   RunResult run;
   run.results = {failed("attitude", "a", 250), failed("attitude", "a", 500),
                  failed("tpa", "b", 250), failed("tpa", "b", 500)};
-  EXPECT_THAT(ids(vectors_to_plot(run, 3)),
+  EXPECT_THAT(ids(vectors_to_plot(run, {}, 3)),
               ElementsAre("px4-v1.5.5/attitude/a@250hz", "px4-v1.5.5/attitude/a@500hz",
                           "px4-v1.5.5/tpa/b@250hz"));
-  EXPECT_THAT(ids(vectors_to_plot(run, 2)),
+  EXPECT_THAT(ids(vectors_to_plot(run, {}, 2)),
               ElementsAre("px4-v1.5.5/attitude/a@250hz", "px4-v1.5.5/tpa/b@250hz"));
 }
 
