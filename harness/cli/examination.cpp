@@ -9,6 +9,7 @@
 #include "harness/host/smoke.hpp"
 #include "harness/port/profiles.hpp"
 #include "harness/report/text.hpp"
+#include "harness/verify/verdict.hpp"
 
 namespace attest::cli {
 

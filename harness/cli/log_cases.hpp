@@ -8,6 +8,7 @@
 #include "harness/casefile/case.hpp"
 #include "harness/casefile/log_case.hpp"
 #include "harness/cli/read_log.hpp"
+#include "harness/loop/open_loop.hpp"
 
 namespace attest::cli {
 
