@@ -131,8 +131,9 @@ class Replay {
                              : entries_.size() > options_.files.size() ? "traces and units agree"
                                                                        : "traces and logs agree";
     if (are_logs_ && passed_ > 0) {
-      fmt::print(out_, "the mistakes that a log shows: attest faults --log {}\n",
-                 options_.files.size() == 1 ? options_.files.front() : "FLIGHT.ulg");
+      fmt::print(
+          out_, "{}\n",
+          meaning_of_pass(options_.files.size() == 1 ? options_.files.front() : "FLIGHT.ulg"));
     }
     const Conclusion conclusion = failed_ > 0   ? Conclusion::fail
                                   : passed_ > 0 ? Conclusion::pass

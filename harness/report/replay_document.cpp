@@ -11,6 +11,7 @@
 #include "harness/core/json_text.hpp"
 #include "harness/core/version.hpp"
 #include "harness/report/failure_text.hpp"
+#include "harness/report/text.hpp"
 #include "harness/trace/output_topics.hpp"
 #include "harness/verify/verdict_json.hpp"
 
@@ -138,6 +139,19 @@ void add_deviations(const TopicAgreement& topic, const LogLimits& limits, const 
   }
 }
 
+// The bars that decided. Neighbours explain no deviation of a single step.
+std::string bars_of(const LogResult& result, const LogLimits& limits) {
+  const double least = result.single_steps
+                           ? std::max(limits.least_part_within, 1 - limits.most_unexplained)
+                           : limits.least_part_within;
+  std::string out =
+      fmt::format("  passes if at least {:g}% of the {} are within {:g} of the log", 100 * least,
+                  result.single_steps ? "single steps" : "samples", limits.within);
+  if (result.single_steps) return out;
+  return out + fmt::format(", and at most {:g}% differ without an explanation",
+                           100 * limits.most_unexplained);
+}
+
 // The lines about the ticks of a unit of which the log has `logged`.
 void add_ticks(const LoggedUnit& unit, const TopicAgreement& topic, const LoggedOutput& logged,
                std::vector<Cell>& lines) {
@@ -228,6 +242,13 @@ ordered_json json_of_steps(const SingleSteps& steps) {
 
 }  // namespace
 
+std::string meaning_of_pass(const std::string& log) {
+  return fmt::format(
+      "a pass by a log proves little, because a flight shows few mistakes of the law; which ones, "
+      "and their share: attest faults --log {}",
+      shell_word(log));
+}
+
 std::string title_of(const LoggedUnit& log) {
   if (log.module == Module::mc_att_control) return log.trace.source;
   return fmt::format("{}: {}", log.trace.source, info_of(log.module).title);
@@ -239,6 +260,7 @@ DocumentTable unit_table(const LoggedUnit& unit, const LogResult& result, const 
       {"topic", "", "paired", "median", "90%", "99%", "largest", "within", "between samples",
        "not explained"}};
   table.rows_in_text = 0;
+  if (is_judged(result.result.verdict)) table.below.emplace_back(bars_of(result, limits));
   if (result.single_steps) add_single_steps(*result.single_steps, table.below);
   for (std::size_t i = 0; i < result.topics.size(); ++i) {
     const TopicAgreement& topic = result.topics[i];
@@ -260,10 +282,9 @@ Document log_document(const FlightLog& log, const std::vector<LogResult>& result
   Document document;
   const Verdict verdict = worst_of(results);
   std::vector<std::string> ticks;
-  document.facts = {{"agreement", fmt::format("at least {:g}% of the samples within {:g}, at most "
-                                              "{:g}% not explained",
-                                              100 * limits.least_part_within, limits.within,
-                                              100 * limits.most_unexplained)}};
+  if (verdict == Verdict::pass) {
+    document.notes.push_back({meaning_of_pass(log.units.front().trace.source)});
+  }
   for (std::size_t i = 0; i < results.size(); ++i) {
     const LoggedUnit& unit = log.units[i];
     const VectorResult& result = results[i].result;
@@ -327,6 +348,9 @@ ordered_json json_of_unit(const FlightLog& log, const LoggedUnit& unit, const Lo
   }
   if (result.single_steps) entry["single_steps"] = json_of_steps(*result.single_steps);
   entry["notes"] = log.notes;
+  if (result.result.verdict == Verdict::pass) {
+    entry["pass_means"] = meaning_of_pass(unit.trace.source);
+  }
   return entry;
 }
 

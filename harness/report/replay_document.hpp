@@ -16,7 +16,8 @@
 // outside the limit and not "between_samples" (compare/log_agreement.hpp). A topic with such a
 // sample has the member "first_unexplained": tick, timestamp_us, channel, got, logged. An entry of
 // the kind "trace" has, in place of has_every_step, topics and notes, the members deviating_ticks,
-// first, worst and tightest of the report of a run (report.schema.json).
+// first, worst and tightest of the report of a run (report.schema.json). A log that passes has
+// "pass_means", a text for people.
 #pragma once
 
 #include <string>
@@ -33,6 +34,9 @@
 namespace attest {
 
 // "flight.ulg"; for a unit of v1.14 to v1.18 "flight.ulg: attitude unit".
+// What a pass by a log says, and the command that lists the mistakes that the log shows.
+std::string meaning_of_pass(const std::string& log);
+
 std::string title_of(const LoggedUnit& log);
 
 // The agreement of each topic of a unit. The lines below the table say how many of the deviations

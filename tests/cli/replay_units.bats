@@ -70,6 +70,19 @@ $2 rate unit" ] || {
   done
 }
 
+@test "a pass by a log says by which bars, how little it proves, and what shows the rest" {
+  local meaning="a pass by a log proves little, because a flight shows few mistakes of the law; "
+  meaning+="which ones, and their share: attest faults --log $SPARSE"
+  run "$ATTEST" replay "$SPARSE" --html page.html --json replay.json
+  [ "$status" -eq 0 ]
+  has "passes if at least 85% of the samples are within 0.0001 of the log, and at most 2% differ without an explanation"
+  has "passes if at least 98% of the single steps are within 0.0001 of the log"
+  [ "${lines[-2]}" = "$meaning" ]
+  grep -qF "$meaning" page.html
+  grep -q "passes if at least 98% of the single steps" page.html
+  [ "$(grep -cF "\"pass_means\": \"$meaning\"" replay.json)" -eq 2 ]
+}
+
 @test "logs of other releases agree with the law of their release" {
   for profile in px4-v1.14.4 px4-v1.15.4 px4-v1.17 px4-v1.18; do
     flight other.ulg --profile "$profile"
