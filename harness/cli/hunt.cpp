@@ -38,6 +38,7 @@ struct HuntCommandOptions {
   bool fail_fast = false;
   HuntFiles files;
   std::string json, junit, html;
+  bool verbose = false;
 };
 
 constexpr double usual_steps = 1e6;
@@ -224,10 +225,14 @@ int hunt_command(const HuntCommandOptions& options, const Globals& globals) {
   if (!was_interrupted) return report_error(was_interrupted.error());
   if (auto kept = keep_findings(options.files, *plan); !kept) return report_error(kept.error());
   const HuntReport& report = plan->report;
-  const Document document = hunt_document(report);
-  if (auto done = files->commit(report, document); !done) return report_error(done.error());
+  const bool has_files = !options.files.out.empty();
+  const Document page = hunt_document(report, has_files ? HuntCases::left_out : HuntCases::shown);
+  if (auto done = files->commit(report, page); !done) return report_error(done.error());
   const bool is_clean = report.found.findings.empty();
-  if (!globals.quiet || !is_clean) fmt::print("{}", render_text(document, terminal_style(stdout)));
+  // In the text, one case is short enough to read; several hide what was found.
+  const bool has_cases = options.verbose || (!has_files && report.found.findings.size() == 1);
+  const Document text = hunt_document(report, has_cases ? HuntCases::shown : HuntCases::left_out);
+  if (!globals.quiet || !is_clean) fmt::print("{}", render_text(text, terminal_style(stdout)));
   if (!globals.quiet) print_hunt_speed(report.found.progress);
   if (*was_interrupted) return exit_interrupted;
   return is_clean ? exit_ok : exit_failed;
@@ -278,6 +283,10 @@ void add_hunt_reports(Command command, HuntCommandOptions& options) {
               "Write each finding as a case of this suite of yours (group `hunt`), and its inputs "
               "and right outputs as a trace")
       .type("DIR")
+      .group(option_group::reports);
+  command
+      .flag("-v,--verbose", options.verbose,
+            "Print the case of each finding; default: if there is one finding, and no --out")
       .group(option_group::reports);
   add_page(command, options.html, "a page with the findings");
   add_json_and_junit(command, options.json, "Write the findings as JSON", options.junit);

@@ -25,6 +25,8 @@ struct Suspect {
   const faults::Fault* fault = nullptr;    // of the catalogue, or port_that_calls() (c_library.hpp)
   std::size_t explained = 0, failing = 0;  // failing vectors, in whole or in part
   std::vector<const faults::Fault*> ambiguity_group;  // at most four, which explain the same
+  // How many others explain the same outputs within the tolerances, but perhaps less exactly.
+  std::size_t others = 0;
 };
 
 struct Diagnosis {

@@ -106,8 +106,8 @@ Result<void> Findings::diagnose(const HuntFailure& failure, const ShrunkCase& sh
     vectors.emplace_back(*std::move(text), passed);
   }
   finding.diagnosis = diagnosis_of(failure.target, vectors);
-  if (finding.diagnosis && !finding.diagnosis->suspects.empty()) {
-    finding.name = identifier(std::string(finding.diagnosis->suspects.front().fault->id));
+  if (const faults::Fault* fault = fault_of(finding)) {
+    finding.name = identifier(std::string(fault->id));
   }
   return {};
 }
@@ -137,12 +137,21 @@ std::optional<Diagnosis> Findings::diagnosis_of(
   return diagnose_run(run, cases, host, options);
 }
 
-// Findings of one cause are one finding, with the shortest case.
+// The fault that fits best, also if others do.
+const faults::Fault* best_fault(const HuntFinding& finding) {
+  return fitting_faults(finding) == 0 ? nullptr : finding.diagnosis->suspects.front().fault;
+}
+
+// Findings of one cause are one finding, with the shortest case that has the name of the fault.
 void Findings::add(HuntFinding finding) {
-  const auto same = std::ranges::find(found_, finding.name, &HuntFinding::name);
+  const auto same = std::ranges::find_if(found_, [&](const HuntFinding& one) {
+    const bool is_named = fault_of(one) != nullptr || fault_of(finding) != nullptr;
+    return one.name == finding.name || (is_named && best_fault(one) == best_fault(finding));
+  });
   if (same == found_.end()) return found_.push_back(std::move(finding));
   const auto size = [](const HuntFinding& one) {
-    return std::tuple(one.needs_others, one.trace.samples.size(), one.toml.size());
+    return std::tuple(fault_of(one) == nullptr, one.needs_others, one.trace.samples.size(),
+                      one.toml.size());
   };
   finding.trials = std::max(finding.trials, same->trials);
   if (size(finding) < size(*same)) std::swap(finding, *same);
@@ -150,6 +159,18 @@ void Findings::add(HuntFinding finding) {
 }
 
 }  // namespace
+
+std::size_t fitting_faults(const HuntFinding& finding) {
+  const bool has_suspect = finding.diagnosis && !finding.diagnosis->suspects.empty();
+  return has_suspect ? 1 + finding.diagnosis->suspects.front().others : 0;
+}
+
+const faults::Fault* fault_of(const HuntFinding& finding) {
+  constexpr std::size_t most_named = 3;
+  const std::size_t fitting = fitting_faults(finding);
+  if (fitting == 0 || fitting > most_named) return nullptr;
+  return finding.diagnosis->suspects.front().fault;
+}
 
 Result<std::vector<HuntFinding>> findings_of(std::span<const HuntFailure> failures,
                                              std::span<const std::vector<HuntInputs>> passing,

@@ -35,6 +35,13 @@ struct HuntFinding {
   bool needs_others = false;  // fails only after other trials in the same process: has no case
 };
 
+// The fault of the catalogue that the finding resembles; null if there is none, or if so many fit
+// the small case that a name would be a guess.
+const faults::Fault* fault_of(const HuntFinding& finding);
+
+// How many faults fit it.
+std::size_t fitting_faults(const HuntFinding& finding);
+
 // In the order of the failures. `passing`: of each target, trials that the port passes, to tell
 // faults apart. REQUIRES: HostOptions::said. Errors: the port cannot be started, the reference
 // fails, a case does not make its inputs, an interrupt.

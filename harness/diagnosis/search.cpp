@@ -158,11 +158,12 @@ void Search::refute(std::vector<Candidate>& candidates) const {
 
 void Search::take(const Candidate& best, const std::vector<Candidate>& candidates) {
   const auto all = faults::catalogue();
-  Suspect suspect{all[best.fault], 0, failing_.size(), {}};
+  Suspect suspect{all[best.fault], 0, failing_.size(), {}, 0};
   const std::vector<OutputMask> gained = gains_of(best.fault);
   for (const Candidate& other : candidates) {
-    const bool as_good = other.fault != best.fault && gains_of(other.fault) == gained &&
-                         std::abs(other.score.nearer - best.score.nearer) < 1e-9 &&
+    const bool explains_it = other.fault != best.fault && gains_of(other.fault) == gained;
+    suspect.others += explains_it ? 1 : 0;
+    const bool as_good = explains_it && std::abs(other.score.nearer - best.score.nearer) < 1e-9 &&
                          other.score.contradicted <= best.score.contradicted;
     if (as_good && suspect.ambiguity_group.size() < most_in_group) {
       suspect.ambiguity_group.push_back(all[other.fault]);
@@ -251,7 +252,7 @@ bool Search::search_combination() {
     best = std::move(combination);
   }
   for (const std::size_t fault : best) {
-    suspects_.push_back({faults::catalogue()[fault], 0, failing_.size(), {}});
+    suspects_.push_back({faults::catalogue()[fault], 0, failing_.size(), {}, 0});
   }
   return !best.empty();
 }

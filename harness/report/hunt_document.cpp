@@ -28,14 +28,13 @@ std::string sentence_of(const HuntReport& report) {
                      counted(progress.trials, "trial"), counted(progress.steps, "step"));
 }
 
-const faults::Fault* fault_of(const HuntFinding& finding) {
-  const bool has_suspect = finding.diagnosis && !finding.diagnosis->suspects.empty();
-  return has_suspect ? finding.diagnosis->suspects.front().fault : nullptr;
-}
-
 std::string resemblance(const HuntFinding& finding) {
   if (const faults::Fault* fault = fault_of(finding)) {
     return fmt::format("{}: {}", fault->id, fault->what);
+  }
+  if (const std::size_t fitting = fitting_faults(finding); fitting > 0) {
+    return fmt::format("fits {} mistakes, e.g. {}", fitting,
+                       finding.diagnosis->suspects.front().fault->id);
   }
   return finding.failure.first ? stages_text(stages_of(*finding.failure.first)) : "";
 }
@@ -51,7 +50,7 @@ std::vector<Cell> row_of(const HuntFinding& finding) {
           resemblance(finding)};
 }
 
-void add_lines(const HuntFinding& finding, const HuntReport::Written& written,
+void add_lines(const HuntFinding& finding, const HuntReport::Written& written, HuntCases cases,
                std::vector<Cell>& lines) {
   lines.emplace_back(fmt::format("{}: {}", finding.name, failure_headline(finding.failure)));
   if (finding.needs_others) {
@@ -62,7 +61,7 @@ void add_lines(const HuntFinding& finding, const HuntReport::Written& written,
   }
   if (!written.case_file.empty()) lines.emplace_back("  case: " + written.case_file);
   if (!written.command.empty()) lines.emplace_back("  reproduce: " + written.command);
-  if (!written.case_file.empty()) return;
+  if (cases == HuntCases::left_out) return;
   constexpr std::size_t most_lines = 40;
   const auto text = lines_of(finding.toml);
   for (std::size_t i = 0; i < std::min(text.size(), most_lines); ++i) {
@@ -76,7 +75,7 @@ void add_lines(const HuntFinding& finding, const HuntReport::Written& written,
 
 }  // namespace
 
-Document hunt_document(const HuntReport& report) {
+Document hunt_document(const HuntReport& report, HuntCases cases) {
   const auto& findings = report.found.findings;
   Document document;
   document.head = {findings.empty() ? Conclusion::pass : Conclusion::fail, title_of(report),
@@ -91,7 +90,16 @@ Document hunt_document(const HuntReport& report) {
   for (std::size_t i = 0; i < findings.size(); ++i) {
     table.rows.push_back(row_of(findings[i]));
     add_lines(findings[i], i < report.written.size() ? report.written[i] : HuntReport::Written(),
-              table.below);
+              cases, table.below);
+  }
+  const bool has_files = std::ranges::any_of(
+      report.written, [](const auto& written) { return !written.case_file.empty(); });
+  const bool has_cases = !std::ranges::all_of(findings, &HuntFinding::needs_others);
+  if (cases == HuntCases::left_out && has_cases && !has_files) {
+    table.below.emplace_back(
+        "  --out DIR writes each finding as a case, with the command that runs it; --verbose "
+        "prints "
+        "the cases");
   }
   document.tables.push_back(std::move(table));
   return document;
@@ -120,6 +128,7 @@ std::string hunt_json(const HuntReport& report) {
     result.elapsed_s = 0;
     findings.push_back({{"name", finding.name},
                         {"fault", fault != nullptr ? ordered_json(fault->id) : ordered_json()},
+                        {"fits", fitting_faults(finding)},
                         {"trials", finding.trials},
                         {"result", to_json(result)},
                         {"case", finding.toml},

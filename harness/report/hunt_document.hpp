@@ -23,16 +23,19 @@ struct HuntReport {
   std::vector<Written> written;
 };
 
-// A row for each finding, and below the table its diagnosis, its case and its command.
-Document hunt_document(const HuntReport& report);
+enum class HuntCases : std::uint8_t { shown, left_out };
+
+// A row for each finding, and below the table what deviates, its files and its command. The cases
+// are below the table, too, or left out; without files, a note then says how to get them.
+Document hunt_document(const HuntReport& report, HuntCases cases);
 
 // A result for each finding.
 RunResult run_of(const HuntReport& report);
 
 // {"schema": "attest-hunt-1", "attest_version": ..., "port": ..., "level": ..., "seed": 1,
 //  "trials": ..., "steps": ..., "ended_early": reason or "", "notes": [...], "findings": [{"name":
-//  ..., "fault": id or null, "trials": 12, "result": {as in the report of run}, "case": text,
-//  "case_file": ..., "trace_file": ..., "command": ...}]}. Deterministic.
+//  ..., "fault": id or null, "fits": number of faults, "trials": 12, "result": {as in the report of
+//  run}, "case": text, "case_file": ..., "trace_file": ..., "command": ...}]}. Deterministic.
 std::string hunt_json(const HuntReport& report);
 
 }  // namespace attest

@@ -33,6 +33,23 @@ load common
   [ "$status" -eq 1 ]
 }
 
+@test "several findings are listed without their cases, which --verbose prints" {
+  two=(hunt --module rate_law,attitude_law --profile v1.16.0 --steps 60000
+    --port fault:cascade-d-reversed+cascade-m-not-canonical)
+  run "$ATTEST" "${two[@]}"
+  [ "$status" -eq 1 ]
+  has "cascade_d_reversed: differs from the reference; first at tick "
+  has "cascade_m_not_canonical: differs from the reference; first at tick "
+  has "--out DIR writes each finding as a case, with the command that runs it; --verbose prints the cases"
+  lacks "duration_ticks"
+  run "$ATTEST" "${two[@]}" --verbose
+  [ "$(grep -c duration_ticks <<<"$output")" -eq 2 ]
+  lacks "--out DIR"
+  run "$ATTEST" "${two[@]}" --out two
+  lacks "duration_ticks"
+  [ "$(grep -c '  reproduce: attest replay ' <<<"$output")" -eq 2 ]
+}
+
 @test "a finding runs as a trace and as a case" {
   "$ATTEST" hunt --module attitude_unit --steps 100000 --out ours --profile v1.15.4 \
     --port fault:cascade-m-not-canonical >found.txt || [ $? -eq 1 ]

@@ -88,6 +88,19 @@ TEST(Hunt, TwoMistakesAreTwoFindings) {
   EXPECT_THAT(names_of(run), UnorderedElementsAre("cascade_d_reversed", "cascade_m_not_canonical"));
 }
 
+// A case of few ticks fits many faults, and the first of them is then a guess.
+TEST(Hunt, AFindingThatManyFaultsFitHasNoFault) {
+  HuntFinding finding;
+  EXPECT_EQ(fault_of(finding), nullptr);
+  EXPECT_EQ(fitting_faults(finding), 0u);
+  finding.diagnosis.emplace();
+  finding.diagnosis->suspects = {{faults::find_fault("cascade-d-reversed"), 2, 2, {}, 2}};
+  EXPECT_EQ(fault_of(finding), finding.diagnosis->suspects.front().fault);
+  finding.diagnosis->suspects.front().others = 3;
+  EXPECT_EQ(fault_of(finding), nullptr);
+  EXPECT_EQ(fitting_faults(finding), 4u);
+}
+
 // ---- the end ------------------------------------------------------------------------------------
 
 TEST(Hunt, EndsAfterTheRoundThatReachesTheSteps) {

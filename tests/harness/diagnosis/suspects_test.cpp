@@ -74,6 +74,7 @@ TEST(Suspects, FaultsWithTheSameValuesAreNamedWithTheFirst) {
   ASSERT_TRUE(found);
   ASSERT_THAT(suspected(*found), ElementsAre(tilt_fault));
   EXPECT_THAT(ids_of(found->suspects.front().ambiguity_group), ElementsAre(yaw_fault));
+  EXPECT_EQ(found->suspects.front().others, 1u);
 }
 
 TEST(Suspects, AFaultThatNoInputTellsFromTheLawIsNeverNamed) {
