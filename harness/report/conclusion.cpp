@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "harness/report/failure_text.hpp"
+#include "harness/report/matrix.hpp"
 #include "harness/report/text.hpp"
 #include "harness/verify/declared_lacks.hpp"
 
@@ -39,6 +40,16 @@ std::string setting(const RunResult& run) {
   return fmt::format("{}{}, {}", out, name_of(run.level), counted(run.rates.size(), "rate"));
 }
 
+// Why a vector that was not judged does not apply to the port: "it has no module mixer (extension
+// attest.mixer.v1)". Empty for other vectors.
+std::string_view why_not_applicable(const VectorResult& result) {
+  constexpr std::string_view does_not_apply = "does not apply to this port: ";
+  if (is_judged(result.verdict)) return {};
+  const std::string_view why = result.reason;
+  if (why.starts_with(does_not_apply)) return why.substr(does_not_apply.size());
+  return why.starts_with("the port does not support profile ") ? why : std::string_view();
+}
+
 // "47 need --level exact, 30 do not apply to this port, 1 skip": what was not judged or expected to
 // fail.
 std::string counted_apart(const RunResult& run) {
@@ -55,6 +66,35 @@ std::string counted_apart(const RunResult& run) {
   std::vector<std::string> parts;
   for (const auto& [what, count] : needs) parts.push_back(fmt::format("{} {}", count, what));
   return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string cases_of(const Together& group) {
+  constexpr std::size_t named = 3;
+  std::vector<std::string> ids;
+  for (const VectorResult* result : group) {
+    const std::string id = one_line(result->case_id());
+    if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
+  }
+  const std::size_t unnamed = ids.size() - std::min(ids.size(), named);
+  ids.resize(ids.size() - unnamed);
+  std::string out = fmt::format("{}", fmt::join(ids, ", "));
+  if (unnamed > 0) out += fmt::format(" and {} more", unnamed);
+  return out;
+}
+
+// "  28 do not apply to this port:", and a line for each reason.
+std::string not_applicable(const RunResult& run) {
+  const auto reasons = grouped(
+      run, [](const VectorResult& result) { return !why_not_applicable(result).empty(); },
+      [](const VectorResult& a, const VectorResult& b) { return a.reason == b.reason; });
+  std::size_t count = 0;
+  std::string lines;
+  for (const Together& group : reasons) {
+    count += group.size();
+    lines +=
+        fmt::format("      {}: {}\n", group.size(), one_line(why_not_applicable(*group.front())));
+  }
+  return count == 0 ? "" : fmt::format("  {} do not apply to this port:\n{}", count, lines);
 }
 
 // `in_part`: some failing vectors have deviations that no suspect explains.
@@ -98,14 +138,6 @@ Conclusion conclusion_of(const RunResult& run) {
   return run.count(Verdict::pass) > 0 ? Conclusion::pass : Conclusion::none;
 }
 
-std::string_view why_not_applicable(const VectorResult& result) {
-  constexpr std::string_view does_not_apply = "does not apply to this port: ";
-  if (is_judged(result.verdict)) return {};
-  const std::string_view why = result.reason;
-  if (why.starts_with(does_not_apply)) return why.substr(does_not_apply.size());
-  return why.starts_with("the port does not support profile ") ? why : std::string_view();
-}
-
 std::string conclusion_text(const RunResult& run, std::string_view duration) {
   const auto failed = static_cast<std::size_t>(std::ranges::count_if(
       run.results, [](const VectorResult& result) { return fails_a_run(result.verdict); }));
@@ -126,6 +158,24 @@ std::string conclusion_text(const RunResult& run, std::string_view duration) {
     out += fmt::format("; stopped early, {} of {} not run", left, counted(run.selected, "vector"));
   }
   return out;
+}
+
+std::string counted_apart_text(const RunResult& run) {
+  std::string out = not_applicable(run);
+  for (const Verdict verdict : {Verdict::unsupported, Verdict::skip, Verdict::xfail}) {
+    const auto groups = grouped(
+        run,
+        [verdict](const VectorResult& result) {
+          return result.verdict == verdict && why_not_applicable(result).empty();
+        },
+        [](const VectorResult& a, const VectorResult& b) { return a.reason == b.reason; });
+    for (const Together& group : groups) {
+      const std::string reason = one_line(group.front()->reason);
+      out += fmt::format("  {} {}: {}\n      {}\n", group.size(), name_of(verdict),
+                         reason.empty() ? "no reason given" : reason, cases_of(group));
+    }
+  }
+  return out.empty() ? out : "vectors counted apart, not as conformant:\n" + out + "\n";
 }
 
 std::string first_stages(const RunResult& run) {

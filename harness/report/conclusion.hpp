@@ -13,13 +13,13 @@ namespace attest {
 // one vector passed. none: all others.
 Conclusion conclusion_of(const RunResult& run);
 
-// Why a vector that was not judged does not apply to the port: "it has no module mixer (extension
-// attest.mixer.v1)". Empty for other vectors.
-std::string_view why_not_applicable(const VectorResult& result);
-
 // "18 of 20 vectors failed, 1 passed; 1 need --level exact (px4-v1.5.5, numeric, 1 rate) in 1.2 s".
 // `duration` is " in 1.2 s", or empty.
 std::string conclusion_text(const RunResult& run, std::string_view duration = {});
+
+// The vectors that neither passed nor failed, with their reasons. Ends with an empty line; empty if
+// there are no such vectors.
+std::string counted_apart_text(const RunResult& run);
 
 // "first stage to differ: attitude law in 18 vectors, mixer in 2 vectors": the number of first
 // deviations in each stage. Empty without a deviation.

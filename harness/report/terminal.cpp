@@ -133,53 +133,6 @@ std::string failures(const RunResult& run, TerminalStyle style, const std::strin
   return out;
 }
 
-std::string cases_of(const Together& group) {
-  constexpr std::size_t named = 3;
-  std::vector<std::string> ids;
-  for (const VectorResult* result : group) {
-    const std::string id = one_line(result->case_id());
-    if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
-  }
-  const std::size_t unnamed = ids.size() - std::min(ids.size(), named);
-  ids.resize(ids.size() - unnamed);
-  std::string out = fmt::format("{}", fmt::join(ids, ", "));
-  if (unnamed > 0) out += fmt::format(" and {} more", unnamed);
-  return out;
-}
-
-// "  28 do not apply to this port:", and a line for each reason.
-std::string not_applicable(const RunResult& run) {
-  const auto reasons = grouped(
-      run, [](const VectorResult& result) { return !why_not_applicable(result).empty(); },
-      [](const VectorResult& a, const VectorResult& b) { return a.reason == b.reason; });
-  std::size_t count = 0;
-  std::string lines;
-  for (const Together& group : reasons) {
-    count += group.size();
-    lines +=
-        fmt::format("      {}: {}\n", group.size(), one_line(why_not_applicable(*group.front())));
-  }
-  return count == 0 ? "" : fmt::format("  {} do not apply to this port:\n{}", count, lines);
-}
-
-std::string counted_apart(const RunResult& run) {
-  std::string out = not_applicable(run);
-  for (const Verdict verdict : {Verdict::unsupported, Verdict::skip, Verdict::xfail}) {
-    const auto groups = grouped(
-        run,
-        [verdict](const VectorResult& result) {
-          return result.verdict == verdict && why_not_applicable(result).empty();
-        },
-        [](const VectorResult& a, const VectorResult& b) { return a.reason == b.reason; });
-    for (const Together& group : groups) {
-      const std::string reason = one_line(group.front()->reason);
-      out += fmt::format("  {} {}: {}\n      {}\n", group.size(), name_of(verdict),
-                         reason.empty() ? "no reason given" : reason, cases_of(group));
-    }
-  }
-  return out.empty() ? out : "vectors counted apart, not as conformant:\n" + out + "\n";
-}
-
 std::string_view plural_of(Quantity quantity) {
   constexpr std::pair<Quantity, std::string_view> names[] = {
       {Quantity::rate, "rates"},         {Quantity::control, "controls"},
@@ -355,7 +308,7 @@ std::string render_summary(const RunResult& run, double wall_s, TerminalStyle st
                            const std::optional<Diagnosis>& diagnosis, bool verbose) {
   std::string out = header(run) + "\n";
   out += matrices(run, style, verbose);
-  out += counted_apart(run);
+  out += counted_apart_text(run);
   if (verbose) out += accuracy(run, style);
   if (verbose || !run.failed()) out += headroom(run);
   out += failures(run, style, diagnosis ? diagnosis->specific_case : "", verbose);

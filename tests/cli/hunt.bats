@@ -40,7 +40,7 @@ load common
   [ "$status" -eq 1 ]
   has "cascade_d_reversed: differs from the reference; first at tick "
   has "cascade_m_not_canonical: differs from the reference; first at tick "
-  has "--out DIR writes each finding as a case, with the command that runs it; --verbose prints the cases"
+  has "--out DIR writes each finding as a case, with the command that runs it; --verbose prints"
   lacks "duration_ticks"
   run "$ATTEST" "${two[@]}" --verbose
   [ "$(grep -c duration_ticks <<<"$output")" -eq 2 ]

@@ -75,7 +75,7 @@ $2 rate unit" ] || {
   meaning+="which ones, and their share: attest faults --log $SPARSE"
   run "$ATTEST" replay "$SPARSE" --html page.html --json replay.json
   [ "$status" -eq 0 ]
-  has "passes if at least 85% of the samples are within 0.0001 of the log, and at most 2% differ without an explanation"
+  has "passes if at least 85% of the samples are within 0.0001 of the log, and at most 2% differ"
   has "passes if at least 98% of the single steps are within 0.0001 of the log"
   [ "${lines[-2]}" = "$meaning" ]
   grep -qF "$meaning" page.html
