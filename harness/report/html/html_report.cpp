@@ -107,7 +107,7 @@ void add_failure(const VectorResult& result, const RunResult& run, std::vector<C
 std::vector<Cell> row_of(const VectorResult& result, const RunResult& run) {
   // In a vector that fails, the headroom of the other outputs means nothing.
   const bool passed = result.verdict == Verdict::pass || result.verdict == Verdict::xpass;
-  const auto tightest = passed ? result.tightest : std::nullopt;
+  const Headroom* tightest = passed && result.tightest ? &*result.tightest : nullptr;
   const bool is_explained = result.verdict == Verdict::pass || result.first;
   std::vector<Cell> row = {{std::string(name_of(result.verdict)), result.verdict},
                            result.profile + "/" + result.group,
