@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 #include <string_view>
-#include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -20,6 +20,7 @@
 #include "harness/casefile/parse_unit.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/printable.hpp"
+#include "harness/core/suite_files.hpp"
 #include "harness/core/toml.hpp"
 #include "harness/port/profiles.hpp"
 
@@ -284,7 +285,7 @@ void parse_body(const TomlTable& root, Case& parsed) {
 }  // namespace
 
 Result<Case> parse_case(const fs::path& file) {
-  return read_file(file).and_then(
+  return read_suite_file(file).and_then(
       [&](const std::string& text) { return parse_case_text(text, file); });
 }
 
@@ -303,18 +304,16 @@ Result<Case> parse_case_text(std::string_view text, const fs::path& file) {
 }
 
 Result<std::vector<fs::path>> find_case_files(const CaseFolders& folders) {
-  std::map<fs::path, fs::path> by_path;  // below its folder -> the file
+  std::map<std::string, fs::path> by_path;  // below its folder -> the file
   for (const fs::path& folder : folders) {
-    std::error_code error;
-    bool is_empty = true;
-    for (fs::recursive_directory_iterator it(folder, error), end; it != end; it.increment(error)) {
-      if (error) break;
-      if (!it->is_regular_file() || it->path().extension() != ".toml") continue;
-      by_path[it->path().lexically_relative(folder)] = it->path();
-      is_empty = false;
+    auto found = suite_files_below(folder);
+    if (!found) return found;
+    std::erase_if(*found, [](const fs::path& file) { return file.extension() != ".toml"; });
+    for (fs::path& file : *found) {
+      std::string below = file.native().substr(folder.native().size());
+      by_path[std::move(below)] = std::move(file);
     }
-    if (error) return fail_at(folder.string(), fmt::format("cannot be read: {}", error.message()));
-    if (is_empty) {
+    if (found->empty()) {
       return fail_at(folder.string(), "no case files (<profile>/<group>/<behaviour>.toml) in here");
     }
   }

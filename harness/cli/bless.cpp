@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <filesystem>
 #include <iostream>
 #include <set>
 #include <string>
@@ -14,6 +13,7 @@
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/interrupt.hpp"
+#include "harness/core/suite_files.hpp"
 #include "harness/golden/blessing.hpp"
 #include "harness/golden/golden_lock.hpp"
 #include "harness/report/text.hpp"
@@ -92,11 +92,8 @@ Result<void> check_kind(const BlessOptions& options, const Globals& globals,
         "bless --port makes a suite of your own: name its folder, which has your cases/ or a file "
         "BASE, with --suite DIR");
   }
-  std::error_code ignored;
-  if (!reference.empty() || !std::filesystem::exists(suite.golden(), ignored)) return {};
-  const auto is_golden = [](const auto& entry) { return entry.is_directory(); };
-  const std::filesystem::directory_iterator goldens(suite.golden(), ignored);
-  if (std::none_of(begin(goldens), end(goldens), is_golden)) return {};
+  const auto goldens = suite_folders_in(suite.golden());
+  if (!reference.empty() || !goldens || goldens->empty()) return {};
   return fail_at(
       suite.golden().string(),
       "has goldens of attest's own reference; make a folder of your own with cases/ or a "

@@ -9,6 +9,7 @@
 
 #include "harness/casefile/parse.hpp"
 #include "harness/casefile/select.hpp"
+#include "harness/core/suite_files.hpp"
 
 namespace attest::cli {
 namespace {
@@ -24,13 +25,8 @@ void keep_law(const LoopRate& rate, std::vector<SelectedCase>& found) {
 
 Result<Case> find_case(const std::string& name, const SuiteFolder& suite,
                        const std::optional<LoopRate>& rate) {
-  std::error_code ignored;
-  // A folder may have the name of a case by chance, so it is not a case file. parse_case() refuses
-  // a pipe or device.
-  const auto status = std::filesystem::status(name, ignored);
-  if (std::filesystem::exists(status) && !std::filesystem::is_directory(status)) {
-    return parse_case(name);
-  }
+  // A folder may have the name of a case by chance, so it is not a case file.
+  if (is_suite_file(name)) return parse_case(name);
   Selection selection;
   selection.filters = {name};
   auto found = select_cases(suite.case_folders(), selection);

@@ -11,6 +11,7 @@
 
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
+#include "harness/core/suite_files.hpp"
 #include "harness/port/port.hpp"
 
 namespace attest::cli {
@@ -34,10 +35,8 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
 }
 
 bool is_suite(const fs::path& folder) {
-  std::error_code ignored;
-  return fs::is_regular_file(folder / base_file, ignored) ||
-         (fs::is_directory(folder / "cases", ignored) &&
-          fs::is_directory(folder / "golden", ignored));
+  return is_suite_file(folder / base_file) ||
+         (is_suite_folder(folder / "cases") && is_suite_folder(folder / "golden"));
 }
 
 // What a command may not write, with its name in messages.

@@ -5,6 +5,7 @@
 #include "harness/casefile/parse.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/file.hpp"
+#include "harness/core/suite_files.hpp"
 
 namespace attest::cli {
 
@@ -12,7 +13,7 @@ namespace fs = std::filesystem;
 
 Result<void> make_own_suite(const fs::path& root, const fs::path& case_folder) {
   std::error_code failed;
-  const bool is_suite = fs::exists(root / "cases", failed) || fs::exists(root / base_file, failed);
+  const bool is_suite = is_suite_folder(root / "cases") || is_suite_file(root / base_file);
   fs::create_directories(case_folder, failed);
   if (failed) return fail_at(case_folder.string(), "cannot be made: " + failed.message());
   return is_suite ? Result<void>() : write_file(root / base_file, "released\n");

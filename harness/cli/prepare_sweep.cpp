@@ -9,6 +9,7 @@
 #include "harness/cli/run_plan.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/interrupt.hpp"
+#include "harness/core/suite_files.hpp"
 #include "harness/core/version.hpp"
 #include "harness/loop/flight.hpp"
 
@@ -33,9 +34,9 @@ Result<FlightSampler> make_sampler(const SweepOptions& options, const SuiteFolde
   auto& [the_case, plant_configuration, vehicle_model] = *chosen;
   if (auto sane = check_rate(the_case, sweep->rate); !sane) return tl::unexpected(sane.error());
   if (auto few = check_ticks(the_case, sweep->rate); !few) return tl::unexpected(few.error());
-  auto case_text = read_file(the_case.file);
+  auto case_text = read_suite_file(the_case.file);
   if (!case_text) return tl::unexpected(case_text.error());
-  auto vehicle_text = read_file(vehicle_model->vehicle().file);
+  auto vehicle_text = read_suite_file(vehicle_model->vehicle().file);
   if (!vehicle_text) return tl::unexpected(vehicle_text.error());
   return FlightSampler::make(
       *std::move(sweep),

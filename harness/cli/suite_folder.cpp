@@ -8,26 +8,20 @@
 #include <fmt/format.h>
 
 #include "harness/casefile/select.hpp"
-#include "harness/core/file.hpp"
+#include "harness/core/suite_files.hpp"
 
 namespace attest::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-bool has_cases(const fs::path& folder) {
-  std::error_code ignored;
-  return fs::is_directory(folder / "cases", ignored);
-}
+bool has_cases(const fs::path& folder) { return is_suite_folder(folder / "cases"); }
 
-bool names_a_base(const fs::path& folder) {
-  std::error_code ignored;
-  return fs::exists(folder / base_file, ignored);
-}
+bool names_a_base(const fs::path& folder) { return is_suite_file(folder / base_file); }
 
 Result<fs::path> base_of(const fs::path& folder) {
   const fs::path file = folder / base_file;
-  const auto text = read_file(file);
+  const auto text = read_suite_file(file);
   if (!text) return tl::unexpected(text.error());
   const std::string line = text->substr(0, text->find('\n'));
   if (text->find_first_not_of("\r\n", line.size()) != std::string::npos) {
@@ -57,29 +51,27 @@ Result<SuiteFolder> named(const fs::path& folder, const char* by) {
 
 // Adds the case files below `folder`, with their paths from the folder that it is in.
 Result<void> add_cases(const fs::path& folder, std::map<std::string, fs::path>& files) {
-  std::error_code error;
-  if (!fs::is_directory(folder, error)) return {};  // a run reports the missing folder
+  if (!is_suite_folder(folder)) return {};  // a run reports the missing folder
+  const auto found = suite_files_below(folder);
+  if (!found) return tl::unexpected(found.error());
   const std::size_t prefix = folder.native().size();
-  for (auto at = fs::recursive_directory_iterator(folder, error);
-       at != fs::recursive_directory_iterator(); at.increment(error)) {
-    const std::string& path = at->path().native();
-    if (path.ends_with(".toml")) files["cases" + path.substr(prefix)] = at->path();
+  for (const fs::path& file : *found) {
+    const std::string& path = file.native();
+    if (path.ends_with(".toml")) files["cases" + path.substr(prefix)] = file;
   }
-  if (error) return fail_at(folder.string(), error.message());
   return {};
 }
 
 // Adds the origins of the goldens: the hashes in them cover the goldens.
 Result<void> add_origins(const fs::path& golden, std::map<std::string, fs::path>& files) {
-  std::error_code error;
-  if (!fs::is_directory(golden, error)) return {};
-  for (const auto& profile : fs::directory_iterator(golden, error)) {
-    const fs::path file = profile.path() / "provenance.toml";
-    std::error_code ignored;
-    if (!fs::exists(file, ignored)) continue;
-    files[fmt::format("golden/{}/provenance.toml", profile.path().filename().string())] = file;
+  if (!is_suite_folder(golden)) return {};
+  const auto profiles = suite_folders_in(golden);
+  if (!profiles) return tl::unexpected(profiles.error());
+  for (const fs::path& profile : *profiles) {
+    const fs::path file = profile / "provenance.toml";
+    if (!is_suite_file(file)) continue;
+    files[fmt::format("golden/{}/provenance.toml", profile.filename().string())] = file;
   }
-  if (error) return fail_at(golden.string(), error.message());
   return {};
 }
 
@@ -93,19 +85,17 @@ CaseFolders SuiteFolder::case_folders() const {
 }
 
 fs::path SuiteFolder::models() const {
-  std::error_code ignored;
   const fs::path own = root / "models";
-  return base && !fs::is_directory(own, ignored) ? *base / "models" : own;
+  return base && !is_suite_folder(own) ? *base / "models" : own;
 }
 
 fs::path SuiteFolder::recorded() const {
-  std::error_code ignored;
   const fs::path own = golden() / "recorded";
-  return base && !fs::is_directory(own, ignored) ? *base / "golden" / "recorded" : own;
+  return base && !is_suite_folder(own) ? *base / "golden" / "recorded" : own;
 }
 
 std::string SuiteFolder::version_of(const fs::path& folder) const {
-  std::istringstream text(read_file(folder / "VERSION").value_or(""));
+  std::istringstream text(read_suite_file(folder / "VERSION").value_or(""));
   std::string version;
   return text >> version ? version : "unversioned";
 }
@@ -139,10 +129,11 @@ Result<SuiteHash> SuiteFolder::hash() const {
   SuiteHash suite;
   std::string lines;
   for (const auto& [path, file] : files) {
-    auto hash = sha256_of_file(file, most_text_bytes);
-    if (!hash) return tl::unexpected(hash.error());
-    lines += fmt::format("{}  {}\n", *hash, path);
-    suite.files.add(file, *std::move(hash));
+    const auto bytes = read_suite_file(file);
+    if (!bytes) return tl::unexpected(bytes.error());
+    std::string hash = sha256(*bytes);
+    lines += fmt::format("{}  {}\n", hash, path);
+    suite.files.add(file, std::move(hash));
   }
   suite.sha256 = sha256(lines);
   return suite;
@@ -155,7 +146,7 @@ std::optional<fs::path> data_folder() {
   if (has_cases(installed)) return installed;
   for (fs::path above = program.parent_path(); above.has_relative_path();
        above = above.parent_path()) {
-    if (has_cases(above) && fs::is_directory(above / "golden", error)) return above;
+    if (has_cases(above) && is_suite_folder(above / "golden")) return above;
   }
   return std::nullopt;
 }

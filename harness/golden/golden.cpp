@@ -1,12 +1,12 @@
 #include "harness/golden/golden.hpp"
 
 #include <algorithm>
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/core/suite_files.hpp"
 #include "harness/golden/shared_golden.hpp"
 #include "harness/host/manifest.hpp"
 
@@ -20,26 +20,28 @@ std::string how_to_bless(const std::string& case_id) {
 }
 
 // The text of a golden: in the file at its place, or in the new one that a killed bless left next
-// to it. Errors: none of them has the hash of `origin`.
+// to it. Errors: none of them has the hash of `origin`; the file cannot be read.
 Result<std::string> blessed_text(const fs::path& file, const std::string& profile,
                                  const GoldenOrigin& origin) {
   // The place is read again at the end, because a bless at the same time moves the new golden
   // there.
+  Result<std::string> text;
   for (const fs::path& place : {file, new_golden_file(file), file}) {
-    const auto text = read_file(place);
+    text = read_suite_file(place);
     if (!text) continue;
     std::string golden = golden_of_profile(*text, profile);
     if (sha256(golden) == origin.sha256) return golden;
   }
-  std::error_code ignored;
-  return fail_at(file.string(),
-                 fmt::format("{}; restore it from version control, or bless it anew",
-                             fs::exists(file, ignored)
-                                 ? fmt::format("is not the file that was blessed (the SHA-256 of "
-                                               "its traces of {} is another than in the "
-                                               "provenance.toml of this profile)",
-                                               profile)
-                                 : "is missing"));
+  const bool exists = is_suite_file(file);
+  if (exists && !text) return text;
+  return fail_at(
+      file.string(),
+      fmt::format("{}; restore it from version control, or bless it anew",
+                  exists ? fmt::format("is not the file that was blessed (the SHA-256 of "
+                                       "its traces of {} is another than in the "
+                                       "provenance.toml of this profile)",
+                                       profile)
+                         : "is missing"));
 }
 
 }  // namespace
@@ -145,9 +147,8 @@ const Result<GoldenOrigins>& Goldens::origins_of(const std::string& profile) con
 
 std::string Goldens::reference() const {
   std::set<std::string> ports;
-  std::error_code ignored;
-  for (const auto& folder : fs::directory_iterator(root_, ignored)) {
-    const auto& origins = origins_of(folder.path().filename().string());
+  for (const fs::path& folder : suite_folders_in(root_).value_or(std::vector<fs::path>())) {
+    const auto& origins = origins_of(folder.filename().string());
     if (!origins) continue;
     for (const auto& [key, origin] : *origins) {
       if (!origin.inputs.empty()) ports.insert(origin.reference);
@@ -169,9 +170,8 @@ std::vector<std::string> Goldens::without_case(const std::string& profile,
 
 Result<GoldenOrigins> Goldens::read_origins(const std::string& profile) const {
   const fs::path file = origins_file(root_, profile);
-  std::error_code ignored;
-  if (fs::symlink_status(file, ignored).type() == fs::file_type::not_found) return GoldenOrigins{};
-  const auto text = read_file(file);
+  if (!is_suite_file(file)) return GoldenOrigins{};
+  const auto text = read_suite_file(file);
   if (!text) return tl::unexpected(text.error());
   if (suite_) {
     if (auto same = suite_->check(file, sha256(*text)); !same) return tl::unexpected(same.error());

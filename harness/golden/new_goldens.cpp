@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/core/suite_files.hpp"
 #include "harness/core/version.hpp"
 
 namespace attest {
@@ -70,7 +71,7 @@ Result<GoldensByProfile> NewGoldens::goldens_of(const std::string& key) {
   GoldensByProfile goldens;
   const fs::path place = golden_file(goldens_.root(), key);
   for (const fs::path& file : {place, new_golden_file(place)}) {
-    const auto text = read_file(file);
+    const auto text = read_suite_file(file);
     if (!text) continue;  // a run reports a file that is missing
     for (const auto& [profile, golden] : goldens_in(*text)) {
       const auto origins = origins_of(profile);

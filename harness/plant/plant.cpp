@@ -1,13 +1,13 @@
 #include "harness/plant/plant.hpp"
 
 #include <cmath>
-#include <system_error>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "harness/core/file.hpp"
 #include "harness/core/suggestion.hpp"
+#include "harness/core/suite_files.hpp"
 #include "harness/plant/mujoco_plant.hpp"
 #include "harness/plant/ode_plant.hpp"
 
@@ -109,8 +109,7 @@ Result<PlantKind> parse_plant_kind(std::string_view name) {
 Result<std::shared_ptr<const VehicleModel>> VehicleModel::load(const std::filesystem::path& models,
                                                                const std::string& name) {
   const auto toml = models / (name + ".toml");
-  std::error_code ignored;
-  if (!std::filesystem::exists(toml, ignored)) {
+  if (!is_suite_file(toml)) {
     const auto known = vehicle_names(models);
     return fail_at(models.string(), fmt::format("unknown vehicle `{}`{}; there are {}", name,
                                                 suggestion(name, known), fmt::join(known, ", ")));
@@ -119,7 +118,7 @@ Result<std::shared_ptr<const VehicleModel>> VehicleModel::load(const std::filesy
   if (!vehicle) return tl::unexpected(vehicle.error());
   if (!vehicle->mjcf_of.empty()) return load_with_other_mjcf(models, *std::move(vehicle));
   const auto file = models / (name + ".xml");
-  const auto mjcf = read_file(file);
+  const auto mjcf = read_suite_file(file);
   if (!mjcf) return tl::unexpected(mjcf.error());
   vehicle->mjcf_sha256 = sha256(*mjcf);
   auto model = MujocoModel::parse(*mjcf, file, *vehicle);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <system_error>
 
 #include <fmt/format.h>
 
@@ -11,6 +10,7 @@
 #include "controller/mc_att_control/parameters.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/suggestion.hpp"
+#include "harness/core/suite_files.hpp"
 #include "harness/core/toml.hpp"
 
 namespace attest {
@@ -222,7 +222,7 @@ double Vehicle::arm_m() const {
 }
 
 Result<Vehicle> read_vehicle(const fs::path& file) {
-  return read_file(file).and_then(
+  return read_suite_file(file).and_then(
       [&](const std::string& text) { return parse_vehicle(text, file); });
 }
 
@@ -240,9 +240,9 @@ Result<Vehicle> parse_vehicle(std::string_view text, const fs::path& file) {
 
 std::vector<std::string> vehicle_names(const fs::path& models) {
   std::vector<std::string> names;
-  std::error_code error;
-  for (fs::directory_iterator it(models, error), end; !error && it != end; it.increment(error)) {
-    if (it->path().extension() == ".toml") names.push_back(it->path().stem().string());
+  for (const fs::path& file : suite_files_below(models).value_or(std::vector<fs::path>())) {
+    const bool is_vehicle = file.extension() == ".toml" && file.parent_path() == models;
+    if (is_vehicle) names.push_back(file.stem().string());
   }
   std::sort(names.begin(), names.end());
   return names;

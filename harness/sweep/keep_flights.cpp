@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "harness/core/file.hpp"
+#include "harness/core/suite_files.hpp"
 
 namespace attest {
 namespace {
@@ -42,8 +43,8 @@ Result<void> keep_flights(const FlightSampler& sampler, const std::vector<std::u
   fs::remove_all(folder, failed);
   if (samples.empty()) return {};
   if (!failed) fs::create_directories(folder, failed);
-  if (!failed) fs::copy(models, folder / "models", failed);
   if (failed) return fail_at(folder.string(), "cannot be made: " + failed.message());
+  if (auto copied = copy_suite_files(models, folder / "models"); !copied) return copied;
   for (const std::uint64_t sample : samples) {
     if (auto kept = keep(sampler, sample, folder); !kept) return kept;
   }

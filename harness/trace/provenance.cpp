@@ -1,13 +1,14 @@
 #include "harness/trace/provenance.hpp"
 
-#include <system_error>
-
 #include "harness/core/file.hpp"
+#include "harness/core/suite_files.hpp"
 #include "harness/core/toml.hpp"
 
 namespace attest {
 Result<Provenance> read_provenance(const std::filesystem::path& file) {
-  const auto toml = TomlFile::read(file);
+  const auto text = read_suite_file(file);
+  if (!text) return tl::unexpected(text.error());
+  const auto toml = TomlFile::parse(*text, file.string());
   if (!toml) return tl::unexpected(toml.error());
   const TomlTable root = toml->root();
   Provenance provenance;
@@ -24,9 +25,7 @@ Result<Provenance> read_provenance(const std::filesystem::path& file) {
 
 Result<Provenance> provenance_in(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / provenance_name;
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) return Provenance{};
-  return read_provenance(file);
+  return is_suite_file(file) ? read_provenance(file) : Provenance{};
 }
 
 std::string to_toml(const Provenance& provenance) {

@@ -1,13 +1,13 @@
 #include "harness/verify/recorded_check.hpp"
 
 #include <algorithm>
-#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "harness/compare/compare.hpp"
 #include "harness/core/file.hpp"
+#include "harness/core/suite_files.hpp"
 #include "harness/golden/recorded.hpp"
 #include "harness/golden/reference.hpp"
 #include "harness/trace/provenance.hpp"
@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<fs::path> traces_below(const fs::path& folder) {
-  auto files = files_below(folder).value_or(std::vector<fs::path>());
+  auto files = suite_files_below(folder).value_or(std::vector<fs::path>());
   std::erase_if(files, [](const fs::path& file) { return file.extension() != ".csv"; });
   return files;
 }
@@ -29,9 +29,9 @@ Result<void> check_bytes(const fs::path& file, const Provenance& provenance) {
   if (recorded == provenance.sha256.end()) {
     return fail_at(file.string(), "is not listed under [sha256] in provenance.toml");
   }
-  const auto hash = sha256_of_file(file);
-  if (!hash) return tl::unexpected(hash.error());
-  if (*hash == recorded->second) return {};
+  const auto text = read_suite_file(file);
+  if (!text) return tl::unexpected(text.error());
+  if (sha256(*text) == recorded->second) return {};
   return fail_at(file.string(),
                  "is not what was recorded (its SHA-256 is another than in "
                  "provenance.toml); restore it from version control");
