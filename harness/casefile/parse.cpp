@@ -311,7 +311,7 @@ Result<std::vector<fs::path>> find_case_files(const CaseFolders& folders) {
     std::erase_if(*found, [](const fs::path& file) { return file.extension() != ".toml"; });
     for (fs::path& file : *found) {
       std::string below = file.native().substr(folder.native().size());
-      by_path[std::move(below)] = std::move(file);
+      by_path.insert_or_assign(by_path.end(), std::move(below), std::move(file));
     }
     if (found->empty()) {
       return fail_at(folder.string(), "no case files (<profile>/<group>/<behaviour>.toml) in here");

@@ -68,17 +68,19 @@ Result<void> check_names(const std::vector<std::string>& asked, const std::set<s
 // The group is taken from the path, so that files that cannot match need not be read.
 std::string group_of(const fs::path& file) { return file.parent_path().filename().string(); }
 
-Result<void> check_groups(const std::vector<fs::path>& files, const Selection& selection) {
+Result<void> keep_groups(const Selection& selection, std::vector<fs::path>& files) {
+  if (selection.groups.empty()) return {};
   std::set<std::string> groups;
   for (const fs::path& file : files) groups.insert(group_of(file));
+  std::erase_if(files,
+                [&](const fs::path& file) { return !contains(selection.groups, group_of(file)); });
   return check_names(selection.groups, groups, "group");
 }
 
 // Whether a pattern can match a case of this file. Of `<profile>/<group>/<name>`, only group and
-// name are known here, from the path. Take the text from the pattern's last wildcard to the
-// pattern's @: either the known part must end with this text, or this text with the known part. A
-// pattern with a wildcard and without @ may match any file, because the wildcard may match the @ of
-// a vector and all that follows. Patterns with [ or \ are not examined: they may match any file.
+// name are known here, from the path. Take the text from the pattern's last wildcard to its @:
+// either the known part must end with this text, or this text with the known part. A wildcard
+// without @ may match the @ of a vector and all that follows; [ and \ are not examined.
 bool may_match(const std::string& pattern, const fs::path& file) {
   const std::size_t at = pattern.find('@');
   const std::string id = pattern.substr(0, at);
@@ -336,11 +338,9 @@ Result<std::vector<SelectedCase>> select_cases(const CaseFolders& folders,
                                                const Selection& selection) {
   auto files = find_case_files(folders);
   if (!files) return tl::unexpected(files.error());
-  if (auto known = check_groups(*files, selection); !known) return tl::unexpected(known.error());
+  if (auto known = keep_groups(selection, *files); !known) return tl::unexpected(known.error());
   // Only files that a pattern can match are read first. If this gives an error, all files of the
   // groups are read, because the error message lists what they contain.
-  std::erase_if(*files,
-                [&](const fs::path& file) { return !contains(selection.groups, group_of(file)); });
   std::vector<fs::path> likely = *files;
   std::erase_if(likely, [&](const fs::path& file) { return !may_be_selected(file, selection); });
   auto selected = select_from(likely, selection);

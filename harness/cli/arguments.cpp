@@ -20,6 +20,7 @@
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/cli/wrong_arguments.hpp"
+#include "harness/core/suite_files.hpp"
 #include "harness/core/version.hpp"
 #include "harness/report/terminal.hpp"
 
@@ -175,8 +176,11 @@ void hide_suites(const Globals& globals) {
     roots.push_back(suite->root);
     if (suite->base) roots.push_back(*suite->base);
   }
-  if (const auto data = data_folder()) roots.push_back(*data);
+  if (const auto data = data_folder()) roots.push_back(suite_in(*data));
   for (const std::filesystem::path& root : roots) {
+    if (const auto archive = archive_of(root); !archive.empty()) {
+      globals.barrier->hidden.push_back(archive.string());
+    }
     for (const char* part : {"cases", "golden"}) {
       globals.barrier->hidden.push_back((root / part).string());
     }
@@ -193,7 +197,8 @@ int run_command_line(int argc, char** argv) {
   app.fallthrough();
   Globals globals;
   app.add_option("--suite", globals.suite,
-                 "Folder with cases/, golden/ and models/; default: ATTEST_SUITE, else the "
+                 "Folder with cases/, golden/ and models/, or a zip archive of it; default: "
+                 "ATTEST_SUITE, else the "
                  "suite that attest comes with")
       ->type_name("DIR");
   app.add_option("--port-reads", globals.barrier->readable,

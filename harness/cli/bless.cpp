@@ -166,6 +166,9 @@ Result<GoldenKeys> keys_of_all_cases(const SuiteFolder& suite) {
 Result<int> bless_selected(const BlessOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return tl::unexpected(suite.error());
+  if (auto changes = check_can_change(suite->root); !changes) {
+    return tl::unexpected(changes.error());
+  }
   const auto cases = options.select.cases_in(suite->case_folders());
   if (!cases) return tl::unexpected(cases.error());
   if (auto checked = check_kind(options, globals, *suite); !checked) {

@@ -14,8 +14,11 @@
 
 #include "harness/casefile/flight_mode.hpp"
 #include "harness/casefile/stimulus.hpp"
+#include "harness/cli/new_folder.hpp"
+#include "harness/cli/outputs.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/core/suite_files.hpp"
 #include "harness/plant/vehicle.hpp"
 #include "harness/port/features.hpp"
 #include "harness/port/profiles.hpp"
@@ -28,6 +31,7 @@ struct ListOptions {
   SelectionOptions select;
   bool groups = false, parameters = false, channels = false, modes = false, vehicles = false,
        features = false;
+  std::string extract;  // a new folder; empty: not asked for
 };
 
 // The requested profiles; by default all.
@@ -202,6 +206,23 @@ Result<void> list_vehicles(const std::filesystem::path& models) {
   return {};
 }
 
+// Makes a folder with the files of the suite, which is in an archive.
+Result<void> extract(const ListOptions& options, const Globals& globals, const SuiteFolder& suite) {
+  if (archive_of(suite.root).empty()) {
+    return fail_at(suite.root.string(),
+                   "is a folder already; --extract is for a suite in an archive");
+  }
+  if (auto apart = check_output_folder(options.extract, globals.suite); !apart) return apart;
+  const auto made = make_new_folder(options.extract, [&](const std::filesystem::path& folder) {
+    return copy_suite_files(suite.root, folder);
+  });
+  if (made && !globals.quiet) {
+    fmt::print("{0} has the files of {1}. To use them: attest --suite {0} ...\n", options.extract,
+               suite.root.string());
+  }
+  return made;
+}
+
 int list_command(const ListOptions& options, const Globals& globals) {
   if (options.parameters) {
     const auto profiles = chosen_profiles(options.select.profiles);
@@ -218,6 +239,10 @@ int list_command(const ListOptions& options, const Globals& globals) {
 
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
+  if (!options.extract.empty()) {
+    const auto extracted = extract(options, globals, *suite);
+    return extracted ? exit_ok : report_error(extracted.error());
+  }
   if (options.vehicles) {
     const auto listed = list_vehicles(suite->models());
     return listed ? exit_ok : report_error(listed.error());
@@ -250,10 +275,15 @@ void add_list(const CommandLine& line) {
   command.flag("--flight-modes", options->modes,
                "List the flight modes and the flags that they set");
   command.flag("--vehicles", options->vehicles, "List the vehicles with their main data");
+  command
+      .option("--extract", options->extract,
+              "Copy the files of the suite from its archive to this new folder")
+      .type("DIR");
   command.examples(
       {{"attest list --filter 'tpa/*'", "list the cases of a group with their reasons"},
        {"attest list --parameters --profile px4-v1.3.4",
-        "list the parameters of one version of the law"}});
+        "list the parameters of one version of the law"},
+       {"attest list --extract files", "copy the cases, goldens and models that were installed"}});
   command.runs(options, list_command);
 }
 

@@ -113,7 +113,8 @@ constexpr const char* exit_status =
 constexpr const char* environment =
     ".SH ENVIRONMENT\n"
     ".TP\n\\fBATTEST_SUITE\\fR\n"
-    "Folder with cases/, golden/ and models/, if \\fB\\-\\-suite\\fR is not given.\n"
+    "Folder with cases/, golden/ and models/, or a zip archive of it, if \\fB\\-\\-suite\\fR is "
+    "not given.\n"
     ".TP\n\\fBGITHUB_STEP_SUMMARY\\fR\n"
     "File to which \\fB\\-\\-github\\fR adds the job summary. GitHub Actions sets it.\n"
     ".TP\n\\fBHOME\\fR, \\fBXDG_STATE_HOME\\fR\n"

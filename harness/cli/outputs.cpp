@@ -48,6 +48,9 @@ constexpr const char* a_suite = "a suite";
 
 // Other files in the folder of a suite are the user's own.
 std::vector<Protected> parts_of(const fs::path& suite) {
+  if (const fs::path archive = archive_of(suite); !archive.empty()) {
+    return {{identity(archive), a_suite}};
+  }
   std::vector<Protected> parts;
   for (const char* name : {"cases", "golden", "models", base_file}) {
     parts.push_back({identity(suite / name), a_suite});
@@ -127,6 +130,7 @@ Result<void> check_output_folder(const std::string& folder, const std::string& s
 }
 
 Result<void> check_own_suite(const std::string& suite) {
+  if (auto changes = check_can_change(suite); !changes) return changes;
   return check_apart(suite, identity(fs::path(suite) / "cases"), own_data());
 }
 

@@ -15,9 +15,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* packed_suite = "suite.zip";  // in data_folder()
+
 bool has_cases(const fs::path& folder) { return is_suite_folder(folder / "cases"); }
 
 bool names_a_base(const fs::path& folder) { return is_suite_file(folder / base_file); }
+
+// The suite that attest comes with.
+std::optional<fs::path> released_suite() {
+  const auto data = data_folder();
+  if (!data) return std::nullopt;
+  return suite_in(*data);
+}
+
+// Errors: `root` is an archive that cannot be read.
+Result<void> check_archive(const fs::path& root) {
+  if (archive_of(root).empty()) return {};
+  return suite_folders_in(root).map([](const auto&) {});
+}
 
 Result<fs::path> base_of(const fs::path& folder) {
   const fs::path file = folder / base_file;
@@ -27,7 +42,10 @@ Result<fs::path> base_of(const fs::path& folder) {
   if (text->find_first_not_of("\r\n", line.size()) != std::string::npos) {
     return fail_at(file.string(), "has a second line; it names one suite, in one line", 2, 1);
   }
-  const auto base = line == "released" ? data_folder() : folder / line;
+  const auto base = line == "released" ? released_suite() : suite_in(folder / line);
+  if (base) {
+    if (auto intact = check_archive(*base); !intact) return tl::unexpected(intact.error());
+  }
   if (line.empty() || !base || !has_cases(*base)) {
     return fail_at(file.string(), fmt::format("names `{}`, which has no cases/ folder; write "
                                               "`released`, or the path of a suite from here",
@@ -37,7 +55,10 @@ Result<fs::path> base_of(const fs::path& folder) {
   return fail_at(file.string(), fmt::format("names `{}`, which has a BASE itself", line));
 }
 
-Result<SuiteFolder> named(const fs::path& folder, const char* by) {
+// `given`: a suite, or a folder with the archive of one.
+Result<SuiteFolder> named(const fs::path& given, const char* by) {
+  const fs::path folder = suite_in(given);
+  if (auto intact = check_archive(folder); !intact) return tl::unexpected(intact.error());
   if (names_a_base(folder)) {
     auto base = base_of(folder);
     if (!base) return tl::unexpected(base.error());
@@ -57,7 +78,8 @@ Result<void> add_cases(const fs::path& folder, std::map<std::string, fs::path>& 
   const std::size_t prefix = folder.native().size();
   for (const fs::path& file : *found) {
     const std::string& path = file.native();
-    if (path.ends_with(".toml")) files["cases" + path.substr(prefix)] = file;
+    if (!path.ends_with(".toml")) continue;
+    files.insert_or_assign(files.end(), "cases" + path.substr(prefix), file);
   }
   return {};
 }
@@ -143,12 +165,25 @@ std::optional<fs::path> data_folder() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   const fs::path installed = program.parent_path().parent_path() / "share" / "attest";
-  if (has_cases(installed)) return installed;
+  if (suite_in(installed) != installed || has_cases(installed)) return installed;
   for (fs::path above = program.parent_path(); above.has_relative_path();
        above = above.parent_path()) {
     if (has_cases(above) && is_suite_folder(above / "golden")) return above;
   }
   return std::nullopt;
+}
+
+fs::path suite_in(const fs::path& data) {
+  const fs::path archive = data / packed_suite;
+  const bool is_packed = !archive_of(archive).empty() && !has_cases(data) && !names_a_base(data);
+  return is_packed ? archive : data;
+}
+
+Result<void> check_can_change(const fs::path& suite) {
+  if (archive_of(suite).empty()) return {};
+  return fail_at(suite.string(),
+                 "is an archive, which attest does not change; `attest list --extract DIR` makes a "
+                 "folder of a suite, for --suite DIR");
 }
 
 bool is_installation(const fs::path& data) {
@@ -161,7 +196,10 @@ Result<SuiteFolder> find_suite(const std::string& given) {
   if (const char* folder = std::getenv("ATTEST_SUITE"); folder && *folder) {
     return named(folder, "ATTEST_SUITE");
   }
-  if (const auto folder = data_folder()) return SuiteFolder{*folder, {}};
+  if (const auto released = released_suite()) {
+    if (auto intact = check_archive(*released); !intact) return tl::unexpected(intact.error());
+    return SuiteFolder{*released, {}};
+  }
   return fail(
       "no suite found; name the folder that holds cases/ and golden/ with --suite DIR or "
       "ATTEST_SUITE");

@@ -1,4 +1,4 @@
-// The folder of a suite: where its cases, goldens and models are.
+// The folder of a suite: where its cases, goldens and models are. An archive can take its place.
 #pragma once
 
 #include <filesystem>
@@ -68,11 +68,17 @@ struct SuiteFolder {
 // build folder is inside it. Empty: neither exists.
 std::optional<std::filesystem::path> data_folder();
 
+// The suite in the folder `data`: the archive suite.zip of an installation, or the folder itself.
+std::filesystem::path suite_in(const std::filesystem::path& data);
+
+// Errors: `suite` is in an archive, which attest does not change.
+Result<void> check_can_change(const std::filesystem::path& suite);
+
 // Whether `data`, a data_folder(), is that of an installation instead of the source tree.
 bool is_installation(const std::filesystem::path& data);
 
 // `given` if it is not empty; else $ATTEST_SUITE; else data_folder(). Errors: there is no such
-// suite; its file BASE names no suite, or a suite that has a base itself.
+// suite; its file BASE names no suite, or a suite that has a base itself; an archive is damaged.
 Result<SuiteFolder> find_suite(const std::string& given);
 
 }  // namespace attest::cli

@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "harness/core/interrupt.hpp"
+#include "harness/core/suite_files.hpp"
 
 namespace attest {
 namespace {
@@ -86,10 +87,18 @@ std::string copy_from(const std::filesystem::path& path, int copy,
 Result<RereadableFile> RereadableFile::open(const std::filesystem::path& path,
                                             std::chrono::milliseconds writer_within) {
   std::error_code unknown;
-  if (!std::filesystem::is_fifo(path, unknown)) return RereadableFile(path, -1);
+  const bool is_packed = !archive_of(path).empty();
+  if (!is_packed && !std::filesystem::is_fifo(path, unknown)) return RereadableFile(path, -1);
   const int copy = ::memfd_create("attest", MFD_CLOEXEC);
   if (copy < 0) return fail_at(path.string(), fmt::format("no memory: {}", std::strerror(errno)));
   RereadableFile file(fmt::format("/proc/self/fd/{}", copy), copy);
+  if (is_packed) {
+    const auto bytes = read_suite_file(path);
+    if (!bytes) return tl::unexpected(bytes.error());
+    // write() to a file in memory takes all bytes or fails.
+    if (::write(copy, bytes->data(), bytes->size()) >= 0) return file;
+    return fail_at(path.string(), fmt::format("no memory: {}", std::strerror(errno)));
+  }
   const std::string wrong = copy_from(path, copy, writer_within);
   if (!wrong.empty()) return fail_at(path.string(), "cannot read the pipe: " + wrong);
   return file;

@@ -1,4 +1,4 @@
-// Input from a pipe, for readers that open their file more than once.
+// Input from a pipe or an archive, for readers that open their file more than once.
 #pragma once
 
 #include <chrono>
@@ -10,12 +10,13 @@
 namespace attest {
 
 // A file that can be opened more than once: the file itself, or a copy of all that comes from a
-// pipe. The copy is in memory, and is freed with this object.
+// pipe or from an archive (suite_files.hpp). The copy is in memory, and is freed with this object.
 class RereadableFile {
  public:
   // For a pipe: waits until it has a writer, and copies it to its end. Other files are not opened
   // here. Errors: the pipe has neither writer nor data within `writer_within`; it cannot be read;
-  // it has more than 1 GiB.
+  // it has more than 1 GiB; those of read_suite_file() for a file in
+  // an archive.
   static Result<RereadableFile> open(
       const std::filesystem::path& path,
       std::chrono::milliseconds writer_within = std::chrono::seconds(5));

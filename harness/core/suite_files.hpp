@@ -10,7 +10,7 @@
 
 namespace attest {
 
-// Errors: those of read_file().
+// Errors: those of read_file(); those of Archive::read().
 Result<std::string> read_suite_file(const std::filesystem::path& file);
 
 // The files in the folder and in those below it, in the order of the bytes of their paths. Leaves
@@ -24,6 +24,9 @@ Result<std::vector<std::filesystem::path>> suite_folders_in(const std::filesyste
 // wrong.
 bool is_suite_file(const std::filesystem::path& path);
 bool is_suite_folder(const std::filesystem::path& path);
+
+// The part of `path` that names an archive. Empty: the path leads to no archive.
+std::filesystem::path archive_of(const std::filesystem::path& path);
 
 // Copies the files below `folder` to the same places below `to`, which it makes. Errors: a file
 // cannot be read or written.

@@ -5,6 +5,8 @@ tried() {
   local command
   mkdir -p usr/{bin,lib/attest}
   mkdir -p usr/share/{man/man1,bash-completion/completions,zsh/vendor-completions,doc/attest/docs}
+  mkdir -p usr/share/attest
+  echo archive >usr/share/attest/suite.zip
   for command in attest attest-run; do echo page | gzip >usr/share/man/man1/$command.1.gz; done
   tee usr/share/zsh/vendor-completions/_attest >usr/share/bash-completion/completions/attest \
     <<<completion
@@ -45,9 +47,9 @@ FAKE
   has "package: exit code 1 instead of 0: apt-get install"
 }
 
-@test "a package without manual or completion fails the trial" {
+@test "a package without manual, completion or suite fails the trial" {
   for file in man/man1/attest-run.1.gz bash-completion/completions/attest \
-    zsh/vendor-completions/_attest doc/attest/docs/ports.md; do
+    zsh/vendor-completions/_attest doc/attest/docs/ports.md attest/suite.zip; do
     LACKS=usr/share/$file tried
     [ "$status" -eq 1 ]
     has "usr/share/$file"
