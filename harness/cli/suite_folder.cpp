@@ -148,6 +148,7 @@ Result<SuiteHash> SuiteFolder::hash() const {
   }
   if (auto added = add_cases(cases(), files); !added) return tl::unexpected(added.error());
   if (auto added = add_origins(golden(), files); !added) return tl::unexpected(added.error());
+  const auto open = keep_suite_open(base ? *base : root);
   SuiteHash suite;
   std::string lines;
   for (const auto& [path, file] : files) {

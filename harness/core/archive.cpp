@@ -38,6 +38,7 @@ class Bytes {
 
   // Opens the archive until release(). Errors: it is not the one that was opened first.
   Result<void> hold() {
+    if (file_ >= 0) return {};
     file_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     struct stat now {};
     if (file_ < 0 || ::fstat(file_, &now) != 0) {
@@ -55,10 +56,15 @@ class Bytes {
   }
 
   void release() {
-    if (file_ >= 0) ::close(std::exchange(file_, -1));
+    if (file_ >= 0 && !stays_open_) ::close(std::exchange(file_, -1));
     ::explicit_bzero(ahead_.data(),
                      ahead_size_);  // may have bytes of a neighbour, such as a golden
     ahead_size_ = 0;
+  }
+
+  void stay_open(bool stays) {
+    stays_open_ = stays;
+    if (!stays) release();
   }
 
   // Keeps the rest of the archive, which is the directory, because minizip reads it byte by byte.
@@ -74,7 +80,13 @@ class Bytes {
     functions.opaque = this;
     functions.zopen64_file = [](voidpf opaque, const void*, int) { return opaque; };
     functions.zread_file = [](voidpf opaque, voidpf, void* to, uLong count) -> uLong {
-      return static_cast<Bytes*>(opaque)->read(static_cast<char*>(to), count);
+      auto& bytes = *static_cast<Bytes*>(opaque);
+      if (count != 1 || bytes.at_ - bytes.kept_begin_ >= bytes.kept_.size()) {
+        return bytes.read(static_cast<char*>(to), count);
+      }
+      // Most calls: a byte of the directory.
+      *static_cast<char*>(to) = bytes.kept_[bytes.at_++ - bytes.kept_begin_];
+      return 1;
     };
     functions.ztell64_file = [](voidpf opaque, voidpf) -> ZPOS64_T {
       return static_cast<Bytes*>(opaque)->at_;
@@ -109,12 +121,7 @@ class Bytes {
   // Whether `part`, which begins at `begin`, has the `count` bytes at at_; then copies them.
   bool copy_from(std::string_view part, std::uint64_t begin, char* to, std::size_t count) const {
     if (at_ < begin || at_ + count > begin + part.size()) return false;
-    const char* const from = part.data() + (at_ - begin);
-    if (count == 1) {
-      *to = *from;  // minizip reads most numbers so
-    } else {
-      std::copy_n(from, count, to);
-    }
+    std::copy_n(part.data() + (at_ - begin), count, to);
     return true;
   }
 
@@ -140,6 +147,7 @@ class Bytes {
   fs::path path_, name_;  // name_: in messages
   struct stat first_ {};
   int file_ = -1;
+  bool stays_open_ = false;
   std::uint64_t at_ = 0;
   std::string kept_;
   std::uint64_t kept_begin_ = 0;
@@ -262,6 +270,11 @@ Result<Archive> Archive::open(const fs::path& path) {
   contents->bytes.release();
   if (!read) return tl::unexpected(read.error());
   return Archive(std::move(contents));
+}
+
+std::shared_ptr<const void> Archive::keep_open() const {
+  contents_->bytes.stay_open(true);
+  return {contents_.get(), [](Contents* contents) { contents->bytes.stay_open(false); }};
 }
 
 const std::vector<std::string>& Archive::names() const { return contents_->names; }

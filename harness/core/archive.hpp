@@ -29,6 +29,10 @@ class Archive {
   // is damaged, or larger than a file that read_file() reads; the archive was changed since open().
   Result<std::string> read(const std::string& name, const std::filesystem::path& file) const;
 
+  // Keeps the archive open while the result exists, so that many files are read in less time. No
+  // process may be forked meanwhile.
+  std::shared_ptr<const void> keep_open() const;
+
  private:
   struct Contents;
   explicit Archive(std::unique_ptr<Contents> contents);

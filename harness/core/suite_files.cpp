@@ -171,7 +171,13 @@ bool is_suite_folder(const fs::path& path) {
   return fs::is_directory(path, ignored);
 }
 
+std::shared_ptr<const void> keep_suite_open(const fs::path& suite) {
+  const auto place = place_of(suite);
+  return place && *place ? (*place)->archive.keep_open() : nullptr;
+}
+
 Result<void> copy_suite_files(const fs::path& folder, const fs::path& to) {
+  const auto open = keep_suite_open(folder);
   const auto files = suite_files_below(folder);
   if (!files) return tl::unexpected(files.error());
   for (const fs::path& file : *files) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,10 @@ Result<std::vector<std::filesystem::path>> suite_folders_in(const std::filesyste
 // wrong.
 bool is_suite_file(const std::filesystem::path& path);
 bool is_suite_folder(const std::filesystem::path& path);
+
+// For many files of the suite: while the result exists, its archive stays open. No process may be
+// forked meanwhile. Null if it is a folder.
+std::shared_ptr<const void> keep_suite_open(const std::filesystem::path& suite);
 
 // The part of `path` that names an archive. Empty: the path leads to no archive.
 std::filesystem::path archive_of(const std::filesystem::path& path);

@@ -84,6 +84,25 @@ TEST_P(SuiteFiles, AreReadAndCopied) {
       (root_ / "cases/c.toml").string() + ": cannot open the file: No such file or directory");
 }
 
+// A descriptor that stays open could be inherited by a port.
+TEST_P(SuiteFiles, StayOpenOnlyOnRequest) {
+  const auto descriptors = [] {
+    return std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator());
+  };
+  const auto before = descriptors();
+  const fs::path file = root_ / "cases/law/b.toml";
+  EXPECT_TRUE(read_suite_file(file));
+  EXPECT_EQ(descriptors(), before);
+  {
+    const auto open = keep_suite_open(root_);
+    EXPECT_EQ(read_suite_file(file), "b = 1\n");
+    EXPECT_EQ(read_suite_file(root_ / "cases/law-2/a.toml"), "a = 1\n");
+    EXPECT_EQ(descriptors(), before + (archive_of(root_).empty() ? 0 : 1));
+  }
+  EXPECT_EQ(descriptors(), before);
+  EXPECT_TRUE(read_suite_file(file));
+}
+
 TEST_P(SuiteFiles, AreOtherThanFolders) {
   EXPECT_TRUE(is_suite_folder(root_));
   EXPECT_TRUE(is_suite_folder(root_ / "cases"));
