@@ -50,6 +50,7 @@ Option Command::option(const char* name, T& value, const std::string& what) cons
 }
 template Option Command::option(const char*, std::string&, const std::string&) const;
 template Option Command::option(const char*, std::vector<std::string>&, const std::string&) const;
+template Option Command::option(const char*, std::vector<double>&, const std::string&) const;
 template Option Command::option(const char*, std::filesystem::path&, const std::string&) const;
 template Option Command::option(const char*, int&, const std::string&) const;
 template Option Command::option(const char*, std::uint64_t&, const std::string&) const;

@@ -67,8 +67,8 @@ class Command {
   const Globals& globals() const { return *globals_; }
 
   // `value` outlives the command line. A name without hyphens is that of an argument. T:
-  // std::string, a list of them, std::filesystem::path, int, std::uint64_t, double, an optional int
-  // or double.
+  // std::string, double, a list of one of these, std::filesystem::path, int, std::uint64_t, an
+  // optional int or double.
   template <typename T>
   Option option(const char* name, T& value, const std::string& what) const;
   // A name such as "--stack,!--no-stack" has its negation.

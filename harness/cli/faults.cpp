@@ -13,8 +13,8 @@
 #include "harness/diagnosis/naive_suite.hpp"
 #include "harness/port/fault_port.hpp"
 #include "harness/port/profiles.hpp"
-#include "harness/report/conclusion.hpp"
 #include "harness/report/fault_table.hpp"
+#include "harness/report/progress.hpp"
 
 namespace attest::cli {
 namespace {
@@ -29,6 +29,8 @@ struct FaultOptions {
   std::string level;  // of all cases; empty: numeric, and exact for cases of that level only
   std::string log;    // of a flight, in place of the suite
   std::vector<std::string> assumed;
+  std::vector<double> hunt;  // the steps of the hunts; empty: none
+  std::uint64_t seed = 1;    // of the hunts
   int jobs = 1;
 };
 
@@ -69,115 +71,98 @@ Result<std::vector<SelectedCase>> open_loop_cases(const SuiteFolder& suite,
   return cases;
 }
 
-std::vector<FaultFinding> find_naively(const std::vector<const Fault*>& faults,
-                                       const std::string& profile) {
-  std::vector<FaultFinding> findings;
-  for (const Fault* fault : faults) {
-    const auto port = open_fault(fault->id);
-    FaultFinding finding;
-    finding.fault = fault;
-    finding.profile = profile;
-    finding.by_hover = caught_by_hover(**port, profile);
-    finding.by_random_attitudes = caught_by_random_attitudes(**port, profile);
-    findings.push_back(std::move(finding));
-  }
-  return findings;
+FaultFinding finding_of(const Fault& fault, const std::string& profile, const FaultCatch& found) {
+  const auto port = open_fault(fault.id);
+  return {&fault, profile, found, caught_by_hover(**port, profile),
+          caught_by_random_attitudes(**port, profile)};
 }
 
 int verdict(const std::vector<FaultFinding>& findings) {
-  const FaultSummary summary = summary_of(findings);
-  for (const FaultFinding* finding : summary.survivors) {
-    fmt::print(stderr, "attest: survives: {}: {}\n", finding->fault->id, finding->fault->what);
-  }
-  for (const FaultFinding* finding : summary.not_by_own) {
-    fmt::print(stderr, "attest: not caught by its group {}: {}: {}\n", finding->fault->group,
-               finding->fault->id, finding->fault->what);
-  }
-  for (const FaultFinding* finding : summary.false_alarms) {
-    fmt::print(stderr, "attest: listed as equivalent, but caught: {} by {}\n", finding->fault->id,
-               finding->found.by);
-  }
-  const bool good =
-      summary.survivors.empty() && summary.not_by_own.empty() && summary.false_alarms.empty();
-  return good ? exit_ok : exit_failed;
-}
-
-// For how many faults the report of most failing vectors names the stage.
-void print_stage_lines(const std::vector<SelfDiagnosis>& results, const std::string& profile) {
-  const auto count = [&](StageLine line) {
-    return std::count_if(results.begin(), results.end(), [line](const SelfDiagnosis& result) {
-      return !result.stage_lines.empty() && result.usual_stage_line() == line;
-    });
-  };
-  for (const SelfDiagnosis& result : results) {
-    const auto& lines = result.stage_lines;
-    if (lines.empty() || result.usual_stage_line() != StageLine::wrong) continue;
-    fmt::print("{}: most reports do not name the stage {}\n", result.fault->id,
-               name_of(result.fault->stage));
-  }
-  fmt::print(
-      "{}: \"look first at\" names the stage of {} faults; of {} more, whose stage has no output, "
-      "it names a later stage; of {} another stage\n",
-      profile, count(StageLine::own), count(StageLine::later), count(StageLine::wrong));
+  const std::vector<std::string> wrong = wrong_of_suite(findings);
+  for (const std::string& line : wrong) fmt::print(stderr, "attest: {}\n", line);
+  return wrong.empty() ? exit_ok : exit_failed;
 }
 
 int diagnose_all(const std::vector<SelectedCase>& cases, const std::string& profile) {
   const std::vector<SelfDiagnosis> results = diagnose_catalogue(cases, profile);
-  std::size_t named = 0, stages = 0;
-  for (const SelfDiagnosis& result : results) {
-    named += result.is_named() ? 1 : 0;
-    stages += result.is_stage_named() ? 1 : 0;
-    if (result.is_named()) continue;
-    fmt::print(
-        "{} is not named; the diagnosis is:\n{}", result.fault->id,
-        result.diagnosis ? diagnosis_text(*result.diagnosis) : "no deviation from the law\n");
-  }
-  const double part = 100 * static_cast<double>(named) / static_cast<double>(results.size());
-  fmt::print(
-      "{}: {} of {} faults are named first, alone or with faults that match equally well "
-      "({:.1f}%); the stage of {} is named\n",
-      profile, named, results.size(), part, stages);
-  print_stage_lines(results, profile);
-  constexpr double enough = 95;
-  return part >= enough ? exit_ok : exit_failed;
+  fmt::print("{}", render_self_diagnoses(results, profile));
+  const auto named = std::ranges::count_if(results, &SelfDiagnosis::is_named);
+  constexpr double enough = 0.95;
+  const bool are_enough =
+      static_cast<double>(named) >= enough * static_cast<double>(results.size());
+  return are_enough ? exit_ok : exit_failed;
 }
 
-JobResults<FaultCatch> catches_of(const Jobs<FaultCatch>& jobs, const FaultOptions& options) {
-  JobOptions<FaultCatch> workers;
-  workers.processes = options.jobs;
+// Errors: those of the jobs; an interrupt.
+template <typename R>
+Result<std::vector<R>> results_of(const Jobs<R>& jobs, int processes, bool is_quiet) {
+  Progress progress(jobs.size(), Progress::on_stderr(is_quiet));
+  JobOptions<R> workers;
+  workers.processes = processes;
   workers.stop = interrupted;
-  return run_jobs(jobs, workers);
+  workers.on_result = [&](const R&) { progress.add(false, ""); };
+  JobResults<R> outcome = run_jobs(jobs, workers);
+  if (interrupted()) return fail("interrupted");
+  if (!outcome.errors.empty()) return tl::unexpected(outcome.errors.front());
+  return std::move(outcome.results);
+}
+
+Result<void> hunt_faults(const FaultOptions& options, Level level, bool is_quiet,
+                         std::vector<FaultFinding>& findings) {
+  const auto most = static_cast<std::size_t>(*std::ranges::max_element(options.hunt));
+  Jobs<HuntCatch> jobs;
+  for (const FaultFinding& finding : findings) {
+    jobs.push_back(std::make_unique<HuntFaultJob>(
+        *finding.fault, finding.profile, HuntFaultJob::Options{most, options.seed, level}));
+  }
+  const auto found = results_of(jobs, options.jobs, is_quiet);
+  if (!found) return tl::unexpected(found.error());
+  for (std::size_t i = 0; i < findings.size(); ++i) findings[i].hunted = (*found)[i];
+  return {};
+}
+
+Result<std::optional<Level>> level_of(const FaultOptions& options) {
+  if (options.level.empty()) return std::nullopt;
+  const auto level = parse_level(options.level);
+  if (!level) return tl::unexpected(level.error());
+  if (*level != Level::events || options.hunt.empty()) return *level;
+  return fail("--level events: a hunt compares values or bits");
 }
 
 // Prints which faults are caught. Returns exit_ok if a case of its own group catches each
 // detectable fault, and no case catches a fault that is not detectable in the profile. With
-// --level: returns exit_ok, because no single level has to catch all. With --diagnose: prints which
-// faults are not named, and returns exit_ok if at least 95% are named.
-Result<int> measure(const FaultOptions& options, const SuiteFolder& suite,
+// --level: returns exit_ok, because no single level has to catch all. With --hunt: prints also
+// which faults the hunts find. With --diagnose: prints which faults are not named, and returns
+// exit_ok if at least 95% are named.
+Result<int> measure(const FaultOptions& options, const Globals& globals, const SuiteFolder& suite,
                     const std::string& profile, const std::vector<const Fault*>& faults) {
   const auto cases = open_loop_cases(suite, profile);
   if (!cases) return tl::unexpected(cases.error());
   if (options.diagnose) return diagnose_all(*cases, profile);
-  std::optional<Level> level;
-  if (!options.level.empty()) {
-    const auto parsed = parse_level(options.level);
-    if (!parsed) return tl::unexpected(parsed.error());
-    level = *parsed;
-  }
+  const auto level = level_of(options);
+  if (!level) return tl::unexpected(level.error());
   const Goldens goldens(suite.golden());
   goldens.origins_of(profile);  // read here, so that the workers have them
   Jobs<FaultCatch> jobs;
   for (const Fault* fault : faults) {
-    jobs.push_back(
-        std::make_unique<FaultJob>(*fault, profile, *cases, goldens, options.fraction_bits, level));
+    jobs.push_back(std::make_unique<FaultJob>(*fault, profile, *cases, goldens,
+                                              options.fraction_bits, *level));
   }
-  const JobResults<FaultCatch> outcome = catches_of(jobs, options);
-  if (interrupted()) return exit_interrupted;
-  if (!outcome.errors.empty()) return tl::unexpected(outcome.errors.front());
-  std::vector<FaultFinding> findings = find_naively(faults, profile);
-  for (std::size_t i = 0; i < findings.size(); ++i) findings[i].found = outcome.results[i];
+  const auto caught = results_of(jobs, options.jobs, globals.quiet);
+  if (!caught) return tl::unexpected(caught.error());
+  std::vector<FaultFinding> findings;
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    findings.push_back(finding_of(*faults[i], profile, (*caught)[i]));
+  }
+  if (!options.hunt.empty()) {
+    const auto done =
+        hunt_faults(options, level->value_or(Level::numeric), globals.quiet, findings);
+    if (!done) return tl::unexpected(done.error());
+    fmt::print("{}", render_hunted_faults(findings, {options.hunt.begin(), options.hunt.end()}));
+    return *level ? exit_ok : verdict(findings);
+  }
   fmt::print("{}", render_fault_table(findings));
-  if (!level) return verdict(findings);
+  if (!*level) return verdict(findings);
   const FaultSummary summary = summary_of(findings);
   fmt::print("{}, level {}: {} of {} detectable faults are caught\n", profile, options.level,
              summary.caught, summary.detectable);
@@ -201,18 +186,9 @@ Result<std::vector<std::string>> chosen_profiles(const FaultOptions& options,
   return profiles;
 }
 
-// The faults that differ from the law in at least one of `profiles`.
-std::vector<const Fault*> detectable(std::vector<const Fault*> faults,
-                                     const std::vector<std::string>& profiles) {
-  std::erase_if(faults, [&](const Fault* fault) {
-    return std::none_of(profiles.begin(), profiles.end(),
-                        [&](const std::string& profile) { return fault->is_detectable(profile); });
-  });
-  return faults;
-}
-
 // Prints which faults a log of a flight shows.
-int faults_of_log(const FaultOptions& options, std::vector<const Fault*> faults) {
+int faults_of_log(const FaultOptions& options, const Globals& globals,
+                  std::vector<const Fault*> faults) {
   if (options.profiles.size() > 1) return report_error({"--profile: name one, for the log"});
   const auto log = read_log(options.log, options.assumed,
                             options.profiles.empty() ? "" : options.profiles.front());
@@ -222,12 +198,12 @@ int faults_of_log(const FaultOptions& options, std::vector<const Fault*> faults)
   note_interrupts();
   Jobs<FaultCatch> jobs;
   for (const Fault* fault : faults) jobs.push_back(std::make_unique<LogFaultJob>(*fault, *log));
-  const JobResults<FaultCatch> outcome = catches_of(jobs, options);
+  const auto caught = results_of(jobs, options.jobs, globals.quiet);
   if (interrupted()) return exit_interrupted;
-  if (!outcome.errors.empty()) return report_error(outcome.errors.front());
+  if (!caught) return report_error(caught.error());
   std::vector<FaultFinding> findings;
   for (std::size_t i = 0; i < faults.size(); ++i) {
-    findings.push_back({faults[i], log->profile, outcome.results[i]});
+    findings.push_back({faults[i], log->profile, (*caught)[i]});
   }
   fmt::print("{}", render_faults_of_log(options.log, log->profile, findings));
   return exit_ok;
@@ -261,7 +237,7 @@ int print_core(const FaultOptions& options, const SuiteFolder& suite,
 int faults_command(const FaultOptions& options, const Globals& globals) {
   const auto faults = chosen(options);
   if (!faults) return report_error(faults.error());
-  if (!options.log.empty()) return faults_of_log(options, *faults);
+  if (!options.log.empty()) return faults_of_log(options, globals, *faults);
   const auto profiles = chosen_profiles(options, *faults);
   if (!profiles) return report_error(profiles.error());
   if (options.list) {
@@ -278,12 +254,32 @@ int faults_command(const FaultOptions& options, const Globals& globals) {
     if (&profile != &profiles->front()) fmt::print("\n");
     if (!options.diagnose) fmt::print("### {}\n\n", profile);
     const auto of_profile = options.ids.empty() ? of_law_of(profile, *faults) : *faults;
-    const auto code = measure(options, *suite, profile, of_profile);
+    const auto code = measure(options, globals, *suite, profile, of_profile);
+    if (interrupted()) return exit_interrupted;
     if (!code) return report_error(code.error());
-    if (*code == exit_interrupted) return *code;
     worst = std::max(worst, *code);
   }
   return worst;
+}
+
+void add_hunts(Command command, FaultOptions& options) {
+  const Option hunt =
+      command
+          .option("--hunt", options.hunt,
+                  "Also hunt each fault (attest hunt) with so many steps of all modules, and print "
+                  "which faults the suite catches and which a hunt finds; several numbers of steps "
+                  "are separated by commas")
+          .type("STEPS")
+          .separated_by_commas()
+          .one_each_time()
+          .positive();
+  for (const char* other : {"--fraction-bits", "--diagnose", "--log", "--core", "--list"}) {
+    command.find(other).excludes(hunt);
+  }
+  command.option("--seed", options.seed, "Another seed makes other trials of the hunts")
+      .type("N")
+      .shows_default()
+      .needs(hunt);
 }
 
 }  // namespace
@@ -336,12 +332,15 @@ void add_faults(const CommandLine& line) {
       .excludes(bits)
       .excludes(ids)
       .excludes(level);
+  add_hunts(command, *options);
   add_assumed(command, options->assumed);
   add_jobs(command, options->jobs, "Number of faults that run at the same time");
   command.examples({{"attest faults", "measure which faults the open-loop cases catch"},
                     {"attest faults --level events tpa-missing", "the same at one level"},
                     {"attest faults --core >cases/CORE", "choose the vectors of `run --core`"},
                     {"attest faults --log FLIGHT.ulg", "which mistakes does this flight show?"},
+                    {"attest faults --hunt 3e6,18e6 --profile px4-v1.5.5",
+                     "compare the suite with hunts of 10 s and 60 s at 300,000 steps/s"},
                     {"attest faults --list --profile px4-v1.3.4",
                      "list the catalogue of one version of the law"}});
   command.runs(options, faults_command);

@@ -67,11 +67,7 @@ Result<std::vector<ModuleUnderTest>> subjects_of(const HuntCommandOptions& optio
   for (const ProfileInfo& profile : known_profiles()) {
     const std::string name(profile.name);
     if (std::ranges::find(port.profiles, name) == port.profiles.end()) continue;
-    for (const ModuleInfo& info : modules()) {
-      const bool is_hunted = contains(profile.modules, info.module) &&
-                             contains(port.modules, info.module) && contains(*chosen, info.module);
-      if (is_hunted) subjects.push_back({name, info.module});
-    }
+    std::ranges::move(subjects_in(profile, port.modules & *chosen), std::back_inserter(subjects));
   }
   if (!subjects.empty()) return subjects;
   return fail(fmt::format("the port {} has no such module in these profiles: {} of {}",

@@ -4,9 +4,11 @@
 #include <optional>
 #include <string>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "harness/core/error_json.hpp"
+#include "harness/diagnosis/hunt.hpp"
 #include "harness/host/in_process_host.hpp"
 #include "harness/port/fault_port.hpp"
 #include "harness/verify/evaluate.hpp"
@@ -50,6 +52,22 @@ Result<FaultCatch> Codec<FaultCatch>::decode(const std::string& text) {
     FaultCatch found{
         *parse_verdict(in.at("verdict").get<std::string>()), in.at("by").get<std::string>(), {}};
     if (in.contains("tick")) found.tick = in.at("tick").get<std::size_t>();
+    return found;
+  });
+}
+
+std::string Codec<HuntCatch>::encode(const Result<HuntCatch>& result) {
+  return attest::encode(result.map([](const HuntCatch& found) {
+    nlohmann::json out = nlohmann::json::object();
+    if (found.steps_before) out["steps_before"] = *found.steps_before;
+    return out;
+  }));
+}
+
+Result<HuntCatch> Codec<HuntCatch>::decode(const std::string& text) {
+  return attest::decode(text).map([](const nlohmann::json& in) {
+    HuntCatch found;
+    if (in.contains("steps_before")) found.steps_before = in.at("steps_before").get<std::size_t>();
     return found;
   });
 }
@@ -104,6 +122,24 @@ Result<FaultCatch> LogFaultJob::run(std::size_t) {
     return found;
   }
   return found;
+}
+
+Result<HuntCatch> HuntFaultJob::run(std::size_t) {
+  if (!fault_.is_detectable(profile_)) return HuntCatch();
+  const auto port = open_fault(fault_.id);
+  if (!port) return tl::unexpected(port.error());
+  HostOptions host;
+  host.port = fmt::format("fault:{}", fault_.id);
+  host.said = Declarations::asked(**port);
+  host.in_process = true;  // a fault does not crash
+  HuntOptions hunt;
+  hunt.subjects = subjects_in(*find_profile(profile_), host.said->modules);
+  hunt.least_steps = options_.steps;
+  hunt.seed = options_.seed;
+  hunt.level = options_.level;
+  return steps_before_failure(hunt, host).map([](const std::optional<std::size_t>& steps) {
+    return HuntCatch{steps};
+  });
 }
 
 }  // namespace attest

@@ -1,8 +1,9 @@
-// Runs one fault of the catalogue on the suite until a case catches it, or on the log of a flight.
-// This measures what the suite and the log can show.
+// Runs one fault of the catalogue on the suite until a case catches it, on the log of a flight, or
+// in a hunt. This measures what the suite, the log and the hunt can show.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -32,6 +33,21 @@ template <>
 struct Codec<FaultCatch> {
   static std::string encode(const Result<FaultCatch>& result);
   static Result<FaultCatch> decode(const std::string& text);
+};
+
+// The hunt of a fault.
+struct HuntCatch {
+  // As steps_before_failure().
+  std::optional<std::size_t> steps_before;
+
+  // Whether a hunt of so many steps finds the fault.
+  bool is_found_in(std::size_t steps) const { return steps_before && *steps_before < steps; }
+};
+
+template <>
+struct Codec<HuntCatch> {
+  static std::string encode(const Result<HuntCatch>& result);
+  static Result<HuntCatch> decode(const std::string& text);
 };
 
 class FaultJob final : public Job<FaultCatch> {
@@ -76,6 +92,27 @@ class LogFaultJob final : public Job<FaultCatch> {
  private:
   const faults::Fault& fault_;
   const FlightLog& log_;
+};
+
+// Hunts one fault in a profile: all its modules, which take turns, as `attest hunt --profile` does.
+// A fault that is not detectable in the profile is not hunted.
+class HuntFaultJob final : public Job<HuntCatch> {
+ public:
+  struct Options {
+    std::size_t steps = 1;  // at least
+    std::uint64_t seed = 1;
+    Level level = Level::numeric;
+  };
+  HuntFaultJob(const faults::Fault& fault, std::string profile, Options options)
+      : fault_(fault), profile_(std::move(profile)), options_(options) {}
+
+  std::size_t size() const override { return 1; }
+  Result<HuntCatch> run(std::size_t task) override;
+
+ private:
+  const faults::Fault& fault_;
+  std::string profile_;
+  Options options_;
 };
 
 }  // namespace attest

@@ -45,6 +45,10 @@ HuntInputs to_vary(HuntInputs inputs) {
   return inputs;
 }
 
+bool has_failure(const HuntTrials& trials) {
+  return std::ranges::any_of(trials, [](const HuntTrial& one) { return one.failure.has_value(); });
+}
+
 class Hunt {
  public:
   Hunt(const HuntOptions& options, const HostOptions& host)
@@ -68,8 +72,7 @@ class Hunt {
       if (options_.fail_fast && run_.ended_early.empty() && has_finding()) {
         run_.ended_early = "at the first finding";
       }
-    } while ((run_.progress.steps < options_.least_steps || !has_tried_cases()) &&
-             !options_.is_over() && run_.ended_early.empty());
+    } while (goes_on());
     options_.on_end();
     note_silences();
     auto found = findings_of(failures_, passing_, options_.workers, host_);
@@ -78,12 +81,29 @@ class Hunt {
     return std::move(run_);
   }
 
+  Result<std::optional<std::size_t>> steps_before_failure() {
+    do {
+      const std::size_t before = run_.progress.steps;
+      const auto results = trials_of_round(true);
+      if (!results) return tl::unexpected(results.error());
+      if (std::ranges::any_of(*results, has_failure)) return before;
+      if (auto taken = take_round(*results); !taken) return tl::unexpected(taken.error());
+      options_.on_round(run_.progress);
+    } while (goes_on());
+    return std::nullopt;
+  }
+
  private:
+  bool goes_on() const {
+    const bool is_done = run_.progress.steps >= options_.least_steps && has_tried_cases();
+    return !is_done && !options_.is_over() && run_.ended_early.empty();
+  }
   bool has_finding() const { return !failures_.empty() || !silences_.found().empty(); }
   void begin_with_cases(HuntedTarget& hunted) const;
   bool has_tried_cases() const;
   Result<void> round();
-  Result<std::vector<HuntTrials>> trials_of_round() const;
+  Result<std::vector<HuntTrials>> trials_of_round(bool ends_at_failure = false) const;
+  Result<void> take_round(const std::vector<HuntTrials>& round);
   Result<void> check_steps(const std::vector<HuntTrials>& trials) const;
   Result<void> take(const HuntTrial& trial, std::vector<std::vector<HuntInputs>>& kept);
   Result<void> tell_news(const HuntedTarget& hunted, const HuntInputs& inputs,
@@ -119,13 +139,14 @@ bool Hunt::has_tried_cases() const {
   });
 }
 
-Result<std::vector<HuntTrials>> Hunt::trials_of_round() const {
+// `ends_at_failure`: the trials after the first failing one may be left out.
+Result<std::vector<HuntTrials>> Hunt::trials_of_round(bool ends_at_failure) const {
   Jobs<HuntTrials> jobs;
   for (std::size_t part = 0; part < parts_of_round; ++part) {
-    jobs.push_back(
-        std::make_unique<TrialJob>(targets_, options_.seed, next_ + part * count_, count_, host_));
+    jobs.push_back(std::make_unique<TrialJob>(targets_, options_.seed, next_ + part * count_,
+                                              count_, host_, ends_at_failure));
   }
-  return results_of(jobs, options_.workers, host_);
+  return results_of(jobs, options_.workers, host_, ends_at_failure ? has_failure : nullptr);
 }
 
 Result<void> Hunt::round() {
@@ -136,10 +157,14 @@ Result<void> Hunt::round() {
     return {};
   }
   if (!results) return tl::unexpected(results.error());
-  if (auto stepped = check_steps(*results); !stepped) return stepped;
+  return take_round(*results);
+}
+
+Result<void> Hunt::take_round(const std::vector<HuntTrials>& round) {
+  if (auto stepped = check_steps(round); !stepped) return stepped;
   next_ += parts_of_round * count_;
   std::vector<std::vector<HuntInputs>> kept(targets_.size());
-  for (const HuntTrials& trials : *results) {
+  for (const HuntTrials& trials : round) {
     for (const HuntTrial& trial : trials) {
       if (auto taken = take(trial, kept); !taken) return taken;
     }
@@ -238,6 +263,20 @@ void Hunt::note_silences() {
 
 Result<HuntRun> hunt(const HuntOptions& options, const HostOptions& host) {
   return Hunt(options, host).run();
+}
+
+Result<std::optional<std::size_t>> steps_before_failure(const HuntOptions& options,
+                                                        const HostOptions& host) {
+  return Hunt(options, host).steps_before_failure();
+}
+
+std::vector<ModuleUnderTest> subjects_in(const ProfileInfo& profile, const ModuleSet& of_port) {
+  std::vector<ModuleUnderTest> subjects;
+  for (const ModuleInfo& info : modules()) {
+    const bool has_it = contains(profile.modules, info.module) && contains(of_port, info.module);
+    if (has_it) subjects.push_back({std::string(profile.name), info.module});
+  }
+  return subjects;
 }
 
 }  // namespace attest

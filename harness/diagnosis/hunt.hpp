@@ -9,10 +9,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "harness/diagnosis/hunt_findings.hpp"
+#include "harness/port/profiles.hpp"
 
 namespace attest {
 
@@ -51,5 +53,14 @@ struct HuntRun {
 // limit. REQUIRES: HostOptions::said. Errors: the port cannot be started, the reference fails, a
 // case does not make its inputs, stop() after the last round.
 Result<HuntRun> hunt(const HuntOptions& options, const HostOptions& host);
+
+// Hunts up to the first failing trial, which is not shrunk. Returns the steps of the rounds before
+// that trial's round: hunt() finds it if its least_steps are more. Empty: no trial failed.
+// REQUIRES and errors: those of hunt().
+Result<std::optional<std::size_t>> steps_before_failure(const HuntOptions& options,
+                                                        const HostOptions& host);
+
+// The modules of the profile that are in `of_port`.
+std::vector<ModuleUnderTest> subjects_in(const ProfileInfo& profile, const ModuleSet& of_port);
 
 }  // namespace attest

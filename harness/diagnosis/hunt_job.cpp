@@ -98,7 +98,8 @@ Result<HuntTrials> TrialJob::run(std::size_t) {
     const HuntInputs inputs = hunted.trial(seed_, number, targets_.size());
     auto trial = judge_trial(inputs, hunted.target, *host);
     if (!trial) return tl::unexpected(trial.error());
-    const bool hangs = trial->failure && trial->failure->verdict == Verdict::timeout;
+    const bool fails = trial->failure.has_value();
+    const bool hangs = fails && trial->failure->verdict == Verdict::timeout;
     trial->number = number;
     trial->meets &= ~hunted.met;
     trials.push_back(*std::move(trial));
@@ -109,6 +110,7 @@ Result<HuntTrials> TrialJob::run(std::size_t) {
 }
 
 Result<std::string> case_of(const HuntInputs& inputs, Level level, const HuntReasons& reasons) {
+    if (fails && ends_at_failure_) break;
   const auto trace = whole_trace_of(inputs);
   if (!trace) return tl::unexpected(trace.error());
   const TraceCase about{

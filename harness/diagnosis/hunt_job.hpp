@@ -36,12 +36,15 @@ struct HuntWorkers {
   std::function<bool()> stop = [] { return false; };
 };
 
-// Errors: those of the jobs; stop().
+// `is_last`, if set: jobs after the first one with such a result are left out. Errors: those of the
+// jobs; stop().
 template <typename R>
 Result<std::vector<R>> results_of(const Jobs<R>& jobs, const HuntWorkers& workers,
-                                  const HostOptions& host) {
+                                  const HostOptions& host, bool (*is_last)(const R&) = nullptr) {
   JobOptions<R> options;
   options.processes = workers.processes;
+  options.fail_fast = is_last != nullptr;
+  if (is_last != nullptr) options.fails = is_last;
   options.in_process = host.in_process;
   options.stop = workers.stop;
   JobResults<R> outcome = run_jobs(jobs, options);
@@ -57,14 +60,19 @@ struct Codec<HuntTrials> {
 };
 
 // HuntTrial::meets has only what HuntedTarget::met has not. A trial in which the port does not
-// answer in time is the last one.
+// answer in time is the last one; with `ends_at_failure`, so is each trial that fails.
 class TrialJob final : public PortJob<HuntTrials> {
  public:
   // The trials from `first` on, of which each target has its turn. REQUIRES: `targets` outlives
   // this, and does not change while the job runs.
   TrialJob(std::span<const HuntedTarget> targets, std::uint64_t seed, std::uint64_t first,
-           std::size_t count, HostOptions options)
-      : PortJob(std::move(options)), targets_(targets), seed_(seed), first_(first), count_(count) {}
+           std::size_t count, HostOptions options, bool ends_at_failure = false)
+      : PortJob(std::move(options)),
+        targets_(targets),
+        seed_(seed),
+        first_(first),
+        count_(count),
+        ends_at_failure_(ends_at_failure) {}
 
   std::size_t size() const override { return 1; }
   Result<HuntTrials> run(std::size_t task) override;
@@ -74,6 +82,7 @@ class TrialJob final : public PortJob<HuntTrials> {
   std::uint64_t seed_, first_;
   std::size_t count_;
 };
+  bool ends_at_failure_;
 
 // A failure as a case, before and after it was shrunk.
 struct ShrunkCase {

@@ -4,8 +4,10 @@
 #include <map>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/port/profiles.hpp"
+#include "harness/report/conclusion.hpp"
 #include "harness/report/text.hpp"
 
 namespace attest {
@@ -53,6 +55,27 @@ double percent(std::size_t part, std::size_t whole) {
   return whole == 0 ? 100 : 100 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
+// For how many faults the report of most failing vectors names the stage.
+std::string stage_lines(const std::vector<SelfDiagnosis>& results, const std::string& profile) {
+  const auto count = [&](StageLine line) {
+    return std::ranges::count_if(results, [line](const SelfDiagnosis& result) {
+      return !result.stage_lines.empty() && result.usual_stage_line() == line;
+    });
+  };
+  std::string out;
+  for (const SelfDiagnosis& result : results) {
+    const auto& lines = result.stage_lines;
+    if (lines.empty() || result.usual_stage_line() != StageLine::wrong) continue;
+    out += fmt::format("{}: most reports do not name the stage {}\n", result.fault->id,
+                       name_of(result.fault->stage));
+  }
+  return out +
+         fmt::format(
+             "{}: \"look first at\" names the stage of {} faults; of {} more, whose stage has "
+             "no output, it names a later stage; of {} another stage\n",
+             profile, count(StageLine::own), count(StageLine::later), count(StageLine::wrong));
+}
+
 }  // namespace
 
 bool FaultFinding::is_detectable() const { return fault->is_detectable(profile); }
@@ -60,6 +83,15 @@ bool FaultFinding::is_detectable() const { return fault->is_detectable(profile);
 bool FaultFinding::is_caught_by_own_group() const {
   const std::string own = profile + "/" + std::string(fault->group) + "/";
   return is_caught() && found.by.starts_with(own);
+}
+
+std::vector<const faults::Fault*> detectable(std::vector<const faults::Fault*> faults,
+                                             const std::vector<std::string>& profiles) {
+  std::erase_if(faults, [&](const faults::Fault* fault) {
+    return std::ranges::none_of(
+        profiles, [&](const std::string& profile) { return fault->is_detectable(profile); });
+  });
+  return faults;
 }
 
 FaultSummary summary_of(const std::vector<FaultFinding>& findings) {
@@ -80,6 +112,23 @@ FaultSummary summary_of(const std::vector<FaultFinding>& findings) {
     }
   }
   return summary;
+}
+
+std::vector<std::string> wrong_of_suite(const std::vector<FaultFinding>& findings) {
+  const FaultSummary summary = summary_of(findings);
+  std::vector<std::string> lines;
+  for (const FaultFinding* finding : summary.survivors) {
+    lines.push_back(fmt::format("survives: {}: {}", finding->fault->id, finding->fault->what));
+  }
+  for (const FaultFinding* finding : summary.not_by_own) {
+    lines.push_back(fmt::format("not caught by its group {}: {}: {}", finding->fault->group,
+                                finding->fault->id, finding->fault->what));
+  }
+  for (const FaultFinding* finding : summary.false_alarms) {
+    lines.push_back(fmt::format("listed as equivalent, but caught: {} by {}", finding->fault->id,
+                                finding->found.by));
+  }
+  return lines;
 }
 
 std::string render_fault_table(const std::vector<FaultFinding>& findings) {
@@ -110,6 +159,67 @@ std::string render_fault_table(const std::vector<FaultFinding>& findings) {
       percent(summary.by_random_attitudes, summary.detectable), summary.by_naive,
       percent(summary.by_naive, summary.detectable));
   return out;
+}
+
+std::string render_hunted_faults(const std::vector<FaultFinding>& findings,
+                                 const std::vector<std::size_t>& steps) {
+  const std::size_t most = std::ranges::max(steps);
+  std::string out = "| fault | what it does | suite |", rule = "|---|---|---|";
+  for (const std::size_t count : steps) {
+    out += fmt::format(" hunt, {} |", counted(count, "step"));
+    rule += "---|";
+  }
+  out += "\n" + rule + "\n";
+  std::map<std::size_t, std::size_t> found_in;
+  std::vector<std::string_view> only_suite, only_hunt, neither;
+  for (const FaultFinding& finding : findings) {
+    if (!finding.is_detectable()) continue;
+    const std::string_view id = finding.fault->id;
+    out += fmt::format("| `{}` | {} | {} |", id, finding.fault->what, caught_by(finding));
+    for (const std::size_t count : steps) {
+      const bool is_found = finding.hunted.is_found_in(count);
+      found_in[count] += is_found ? 1 : 0;
+      out += is_found ? " found |" : " |";
+    }
+    out += "\n";
+    const bool is_found = finding.hunted.is_found_in(most);
+    if (!is_found) (finding.is_caught() ? only_suite : neither).push_back(id);
+    if (is_found && !finding.is_caught()) only_hunt.push_back(id);
+  }
+  const FaultSummary summary = summary_of(findings);
+  out += fmt::format("\n{}: of {} detectable faults the suite catches {}",
+                     findings.empty() ? "" : findings.front().profile, summary.detectable,
+                     summary.caught);
+  for (const std::size_t count : steps) {
+    out += fmt::format(", a hunt of {} {}", counted(count, "step"), found_in[count]);
+  }
+  out += fmt::format("; neither catches {}.\n", neither.size());
+  const auto add = [&](const char* by, const std::vector<std::string_view>& ids) {
+    if (!ids.empty()) out += fmt::format("{}: `{}`.\n", by, fmt::join(ids, "`, `"));
+  };
+  add("Only by the suite", only_suite);
+  add("Only by a hunt", only_hunt);
+  add("By neither", neither);
+  return out;
+}
+
+std::string render_self_diagnoses(const std::vector<SelfDiagnosis>& results,
+                                  const std::string& profile) {
+  std::string out;
+  for (const SelfDiagnosis& result : results) {
+    if (result.is_named()) continue;
+    out += fmt::format(
+        "{} is not named; the diagnosis is:\n{}", result.fault->id,
+        result.diagnosis ? diagnosis_text(*result.diagnosis) : "no deviation from the law\n");
+  }
+  const auto named =
+      static_cast<std::size_t>(std::ranges::count_if(results, &SelfDiagnosis::is_named));
+  out += fmt::format(
+      "{}: {} of {} faults are named first, alone or with faults that match equally well "
+      "({:.1f}%); the stage of {} is named\n",
+      profile, named, results.size(), percent(named, results.size()),
+      std::ranges::count_if(results, &SelfDiagnosis::is_stage_named));
+  return out + stage_lines(results, profile);
 }
 
 std::string render_faults_of_log(const std::string& log, const std::string& profile,

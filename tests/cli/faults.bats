@@ -143,3 +143,27 @@ CHECK
   [ "$status" -eq 2 ]
   has "nothing.ulg"
 }
+
+@test "hunts are compared with the suite, as attest hunt finds the faults" {
+  compare() {
+    "$ATTEST" -q faults --profile v1.16.0 --hunt 1,400000 "$@" cascade-d-reversed \
+      cascade-tilt-filter-kept cascade-rate-infinite-kept
+  }
+  compare --jobs 1 >one.txt
+  compare --jobs 2 >two.txt
+  cmp one.txt two.txt
+  output=$(cat one.txt)
+  has "| fault | what it does | suite | hunt, 1 step | hunt, 400000 steps |"
+  has "| adds D instead of subtracting it | rates/d_alone@250hz | found | found |"
+  has "| does not clear the filter of the tilt in other modes |"
+  has "| sticks/tilt_filter_starts_again@250hz | | found |"
+  has "of 3 detectable faults the suite catches 3, a hunt of 1 step 1, a hunt of 400000 steps 2;"
+  has 'Only by the suite: `cascade-rate-infinite-kept`.'
+  hunt=("$ATTEST" -q hunt --profile v1.16.0 --port fault:cascade-tilt-filter-kept)
+  "${hunt[@]}" --steps 1
+  run "${hunt[@]}" --steps 400000 --fail-fast
+  [ "$status" -eq 1 ]
+  run "$ATTEST" faults --hunt 1 --level events
+  [ "$status" -eq 2 ]
+  has "--level events: a hunt compares values or bits"
+}

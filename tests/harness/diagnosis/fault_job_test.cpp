@@ -196,5 +196,31 @@ TEST(FaultCatch, WhatFailsARunIsACatch) {
   }
 }
 
+TEST(HuntFaultJob, FindsAFaultOfTheProfile) {
+  const auto hunted = [](const char* fault, const char* profile) {
+    const auto found = HuntFaultJob(*faults::find_fault(fault), profile, {}).run(0);
+    EXPECT_TRUE(found) << found.error().to_string();
+    return found.value_or(HuntCatch()).steps_before;
+  };
+  EXPECT_EQ(hunted("cascade-d-reversed", "px4-v1.16.0"), 0u);
+  EXPECT_EQ(hunted("tpa-missing", "px4-v1.16.0"), std::nullopt);
+}
+
+TEST(HuntCatch, AHuntFindsWhatFailsInOneOfItsRounds) {
+  const HuntCatch found{1000};
+  EXPECT_FALSE(found.is_found_in(1000));  // which ends before that round
+  EXPECT_TRUE(found.is_found_in(1001));
+  EXPECT_FALSE(HuntCatch().is_found_in(1'000'000));
+}
+
+TEST(HuntCatch, ComesBackAsItWas) {
+  const auto back = [](const Result<HuntCatch>& result) {
+    return Codec<HuntCatch>::decode(Codec<HuntCatch>::encode(result));
+  };
+  EXPECT_EQ(back(HuntCatch{17}).value().steps_before, 17u);
+  EXPECT_EQ(back(HuntCatch()).value().steps_before, std::nullopt);
+  EXPECT_EQ(back(fail("no port")).error().message, "no port");
+}
+
 }  // namespace
 }  // namespace attest

@@ -246,6 +246,38 @@ TEST(Hunt, AnErrorOfTheCorpusEndsTheHunt) {
   EXPECT_EQ(found.error().message, "the disk is full");
 }
 
+// ---- steps before a failure ---------------------------------------------------------------------
+
+TEST(Hunt, StepsBeforeAFailureAreThoseOfTheRoundsBefore) {
+  // The mistake begins in the second round: a round has 128 trials.
+  std::size_t traces = 0;
+  const auto wrong_from_second_round = [&] {
+    traces = 0;
+    return changed_host([&](const ModuleUnderTest&, Trace& trace) {
+      const bool is_wrong = ++traces > 128;
+      for (Sample& sample : trace.samples) {
+        if (is_wrong) sample.rate_out.vehicle_torque_setpoint.xyz[1] += 1;
+      }
+      return std::optional<PortFault>();
+    });
+  };
+  HuntOptions options = of_rate_unit();
+  std::vector<std::size_t> steps;
+  options.on_round = [&](const HuntProgress& now) { steps.push_back(now.steps); };
+  const auto in_first = steps_before_failure(options, wrong_from_second_round());
+  ASSERT_TRUE(in_first);
+  EXPECT_EQ(*in_first, std::nullopt);
+  options.least_steps = steps.at(0) + 1;
+  const auto in_second = steps_before_failure(options, wrong_from_second_round());
+  ASSERT_TRUE(in_second);
+  EXPECT_EQ(*in_second, steps.at(0));
+  options.workers.stop = [] { return true; };
+  const auto stopped = steps_before_failure(options, wrong_from_second_round());
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().message, "interrupted");
+}
+  EXPECT_LT(traces, 2 * 128u);  // ended at the first failing trial
+
 // ---- silent topics ------------------------------------------------------------------------------
 
 // Publishes no topic of these names.
