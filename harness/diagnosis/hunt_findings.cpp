@@ -66,6 +66,18 @@ std::string identifier(std::string text) {
   return text;
 }
 
+// The last ticks of the trace up to the first deviation, with these outputs.
+Trace answer_in(const HuntFinding& finding, const Outputs& outputs) {
+  Trace answer;
+  answer.present = finding.trace.present;
+  const std::size_t end = finding.failure.first ? finding.failure.first->tick + 1 : 0;
+  for (std::size_t i = 0; i < outputs.size() && end <= finding.trace.samples.size(); ++i) {
+    answer.samples.push_back(finding.trace.samples[end - outputs.size() + i]);
+    answer.samples.back().copy_outputs(outputs[i].sample());
+  }
+  return answer;
+}
+
 Result<HuntFinding> Findings::finding_of(const HuntFailure& failure, const ShrunkCase& shrunk) {
   HuntFinding finding;
   finding.trials = 1 + failure.same;
@@ -90,6 +102,8 @@ Result<HuntFinding> Findings::finding_of(const HuntFailure& failure, const Shrun
   if (!trace) return tl::unexpected(trace.error());
   finding.mixer = parsed->mixer;
   finding.trace = *std::move(trace);
+  finding.got = answer_in(finding, shrunk.got);
+  finding.got.present &= ~failure.target.lacks.outputs;
   return finding;
 }
 

@@ -31,6 +31,7 @@ struct HuntFinding {
   std::string toml;           // the case file
   std::string mixer;          // its definition; empty: another module
   Trace trace;                // its inputs, with the outputs of the reference
+  Trace got = {};             // the port's answer: ShrunkCase::got, and the inputs of these ticks
   std::size_t trials = 0;     // that failed first in the same output
   bool needs_others = false;  // fails only after other trials in the same process: has no case
 };

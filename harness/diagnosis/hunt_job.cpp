@@ -1,5 +1,8 @@
 #include "harness/diagnosis/hunt_job.hpp"
 
+#include <algorithm>
+#include <cstddef>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -70,16 +73,19 @@ std::string Codec<ShrunkCase>::encode(const Result<ShrunkCase>& result) {
                 {"shrunk", one.shrunk},
                 {"of_whole", to_json(one.of_whole)},
                 {"of_shrunk", to_json(one.of_shrunk)},
-                {"needs_others", one.needs_others}};
+                {"needs_others", one.needs_others},
+                {"got", hex_of(one.got)}};
   }));
 }
 
 Result<ShrunkCase> Codec<ShrunkCase>::decode(const std::string& text) {
   return attest::decode(text).map([](const json& in) {
-    return ShrunkCase{in.at("whole").get<std::string>(), in.at("shrunk").get<std::string>(),
+    return ShrunkCase{in.at("whole").get<std::string>(),
+                      in.at("shrunk").get<std::string>(),
                       vector_result_from_json(in.at("of_whole")).value(),
                       vector_result_from_json(in.at("of_shrunk")).value(),
-                      in.at("needs_others").get<bool>()};
+                      in.at("needs_others").get<bool>(),
+                      outputs_from(in.at("got").get<std::string>())};
   });
 }
 
@@ -104,13 +110,13 @@ Result<HuntTrials> TrialJob::run(std::size_t) {
     trial->meets &= ~hunted.met;
     trials.push_back(*std::move(trial));
     if (hangs) break;  // each further trial may cost the time limit
+    if (fails && ends_at_failure_) break;
     if (makes_one_instance(hunted.target)) host.reset();
   }
   return trials;
 }
 
 Result<std::string> case_of(const HuntInputs& inputs, Level level, const HuntReasons& reasons) {
-    if (fails && ends_at_failure_) break;
   const auto trace = whole_trace_of(inputs);
   if (!trace) return tl::unexpected(trace.error());
   const TraceCase about{
@@ -128,6 +134,22 @@ Result<std::string> case_of(const HuntInputs& inputs, Level level, const HuntRea
   return text;
 }
 
+// Errors: the port cannot be started; the reference fails.
+Result<Outputs> ShrinkJob::answers_to(const ShrunkTrial& shrunk) const {
+  if (!shrunk.failure.first) return Outputs();
+  std::unique_ptr<PortHost> host;
+  if (auto ready = ensure_host(host, options_); !ready) return tl::unexpected(ready.error());
+  auto trace = whole_trace_of(shrunk.inputs);
+  if (!trace) return tl::unexpected(trace.error());
+  trace->keep_first(shrunk.failure.first->tick + 1);
+  for (Sample& sample : trace->samples) sample.clear_outputs();
+  if (host->drive(shrunk.inputs.subject, *trace)) return Outputs();
+  Outputs answers = outputs_of(*trace);
+  const std::size_t kept = std::min(answers.size(), most_answers);
+  answers.erase(answers.begin(), answers.end() - static_cast<std::ptrdiff_t>(kept));
+  return answers;
+}
+
 Result<ShrunkCase> ShrinkJob::run(std::size_t) {
   ShrunkCase found;
   std::unique_ptr<PortHost> host;
@@ -141,6 +163,9 @@ Result<ShrunkCase> ShrinkJob::run(std::size_t) {
   auto shrunk = shrink(target_, inputs_, *trial->failure, options_);
   if (!shrunk) return tl::unexpected(shrunk.error());
   found.of_shrunk = shrunk->failure;
+  auto got = answers_to(*shrunk);
+  if (!got) return tl::unexpected(got.error());
+  found.got = *std::move(got);
   auto whole = case_of(inputs_, target_.level), small = case_of(shrunk->inputs, target_.level);
   if (!whole) return tl::unexpected(whole.error());
   if (!small) return tl::unexpected(small.error());

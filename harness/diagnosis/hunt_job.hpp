@@ -12,6 +12,7 @@
 
 #include "harness/diagnosis/hunt_generator.hpp"
 #include "harness/diagnosis/hunt_trial.hpp"
+#include "harness/diagnosis/similarity.hpp"
 #include "harness/verify/port_job.hpp"
 
 namespace attest {
@@ -42,9 +43,9 @@ template <typename R>
 Result<std::vector<R>> results_of(const Jobs<R>& jobs, const HuntWorkers& workers,
                                   const HostOptions& host, bool (*is_last)(const R&) = nullptr) {
   JobOptions<R> options;
-  options.processes = workers.processes;
   options.fail_fast = is_last != nullptr;
   if (is_last != nullptr) options.fails = is_last;
+  options.processes = workers.processes;
   options.in_process = host.in_process;
   options.stop = workers.stop;
   JobResults<R> outcome = run_jobs(jobs, options);
@@ -81,21 +82,27 @@ class TrialJob final : public PortJob<HuntTrials> {
   std::span<const HuntedTarget> targets_;
   std::uint64_t seed_, first_;
   std::size_t count_;
-};
   bool ends_at_failure_;
+};
 
 // A failure as a case, before and after it was shrunk.
 struct ShrunkCase {
   std::string whole, shrunk;  // texts of case files
   VectorResult of_whole, of_shrunk;
   bool needs_others = false;  // the trial does not fail in a process of its own: no cases
+  // Of the port, at the last ticks of the shrunk trial up to its first deviation, at most
+  // most_answers. Empty without a deviation.
+  Outputs got = {};
 };
+inline constexpr std::size_t most_answers = 2000;
 
 template <>
 struct Codec<ShrunkCase> {
   static std::string encode(const Result<ShrunkCase>& result);
   static Result<ShrunkCase> decode(const std::string& text);
 };
+
+struct ShrunkTrial;
 
 class ShrinkJob final : public PortJob<ShrunkCase> {
  public:
@@ -107,6 +114,8 @@ class ShrinkJob final : public PortJob<ShrunkCase> {
   Result<ShrunkCase> run(std::size_t task) override;
 
  private:
+  Result<Outputs> answers_to(const ShrunkTrial& shrunk) const;
+
   const HuntTarget& target_;
   HuntInputs inputs_;
 };

@@ -137,6 +137,33 @@ Outputs outputs_of(const Trace& trace) {
   return outputs;
 }
 
+std::string hex_of(const Outputs& outputs) {
+  constexpr const char* digits = "0123456789abcdef";
+  std::string text;
+  text.reserve(2 * outputs_size * outputs.size());
+  for (const Answer& answer : outputs) {
+    for (const std::byte byte : answer.bytes) {
+      const auto value = std::to_integer<unsigned>(byte);
+      text += digits[value >> 4];
+      text += digits[value & 15];
+    }
+  }
+  return text;
+}
+
+Outputs outputs_from(const std::string& hex) {
+  const auto value = [](char digit) { return digit <= '9' ? digit - '0' : digit - 'a' + 10; };
+  Outputs outputs(hex.size() / (2 * outputs_size));
+  std::size_t at = 0;
+  for (Answer& answer : outputs) {
+    for (std::byte& byte : answer.bytes) {
+      byte = static_cast<std::byte>(16 * value(hex[at]) + value(hex[at + 1]));
+      at += 2;
+    }
+  }
+  return outputs;
+}
+
 std::vector<Hypothesis> each_fault(const Hypothesis& base) {
   std::vector<Hypothesis> all;
   for (const faults::Fault* fault : faults::catalogue()) {

@@ -63,6 +63,9 @@ struct Answer {
 using Outputs = std::vector<Answer>;  // one per tick
 
 Outputs outputs_of(const Trace& trace);
+// As text, for other processes.
+std::string hex_of(const Outputs& outputs);
+Outputs outputs_from(const std::string& hex);
 
 // The outputs of some hypotheses. On one vector, most faults have the same outputs as the law, so
 // equal outputs are stored once.

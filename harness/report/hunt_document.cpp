@@ -9,6 +9,7 @@
 #include "harness/core/json_text.hpp"
 #include "harness/report/conclusion.hpp"
 #include "harness/report/failure_text.hpp"
+#include "harness/report/hunt_values.hpp"
 #include "harness/report/text.hpp"
 #include "harness/verify/verdict_json.hpp"
 
@@ -73,6 +74,18 @@ void add_lines(const HuntFinding& finding, const HuntReport::Written& written, H
   }
 }
 
+// Of each finding its values, with a link to them, and its plots.
+void add_values(const std::vector<HuntFinding>& findings, Document& document) {
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    DocumentTable values = values_of(findings[i]);
+    if (values.rows.empty()) continue;
+    document.tables.front().rows[i].front().link = values.id;
+    document.tables.push_back(std::move(values));
+    PlotGroup plots = plots_of(findings[i]);
+    if (!plots.plots.empty()) document.groups.push_back(std::move(plots));
+  }
+}
+
 }  // namespace
 
 Document hunt_document(const HuntReport& report, HuntCases cases) {
@@ -102,6 +115,7 @@ Document hunt_document(const HuntReport& report, HuntCases cases) {
         "the cases");
   }
   document.tables.push_back(std::move(table));
+  add_values(findings, document);
   return document;
 }
 

@@ -7,47 +7,11 @@
 #include <fmt/ranges.h>
 
 #include "harness/report/failure_text.hpp"
+#include "harness/report/output_plots.hpp"
 #include "harness/report/text.hpp"
-#include "harness/trace/output_topics.hpp"
 
 namespace attest {
 namespace {
-
-// One output in both traces, each at the ticks that published the output.
-Plot plot_of_output(std::size_t index, const Channel& published, const Trace& want,
-                    const Trace& got, const char* name_of_want) {
-  const Channel& channel = channels()[index];
-  Plot plot{std::string(channel.name), std::string(unit_of(channel.quantity))};
-  plot.series = {{name_of_want, {}, {}}, {"got", {}, {}}};
-  plot.series[1].pattern = LinePattern::dashed;
-  plot.least_span = 4 * Tolerances().of(index).absolute;
-  const auto add = [&](const Trace& trace, PlotSeries& series) {
-    for (const Sample& sample : trace.samples) {
-      if (value_of(published, sample) == 0) continue;
-      const auto elapsed_us = sample.in.timestamp - want.samples.front().in.timestamp;
-      series.x.push_back(1e-6 * static_cast<double>(elapsed_us));
-      series.y.push_back(float_of(channel, sample));
-    }
-  };
-  add(want, plot.series[0]);
-  add(got, plot.series[1]);
-  return plot;
-}
-
-// The float32 outputs that `want` has, of topics with a flag `published`.
-PlotGroup plots_of_outputs(const Trace& want, const Trace& got, const char* name_of_want,
-                           std::string caption = "Outputs") {
-  PlotGroup group{std::move(caption), "time from the first sample [s]", {}};
-  const Module module = module_of(want.present);
-  const ChannelSet outputs = channels_of(module, "out/") & want.present;
-  for (std::size_t i = 0; i < channels().size(); ++i) {
-    if (!outputs[i] || channels()[i].type != ChannelType::f32) continue;
-    const auto published = published_flag(channels()[i]);
-    if (!published) continue;
-    group.plots.push_back(plot_of_output(i, channels()[*published], want, got, name_of_want));
-  }
-  return group;
-}
 
 std::string deviation_text(const std::optional<Deviation>& deviation) {
   if (!deviation) return "";
@@ -254,9 +218,7 @@ Document trace_document(const Trace& want, const Trace& got, const VectorResult&
                     {"worst deviation", deviation_text(result.worst)}};
   PlotGroup outputs = plots_of_outputs(want, got, "want");
   if (result.first) {
-    const double first_s =
-        1e-6 * static_cast<double>(result.first->timestamp_us - want.samples.front().in.timestamp);
-    for (Plot& plot : outputs.plots) plot.marks = {{first_s, "first deviation"}};
+    for (Plot& plot : outputs.plots) plot.marks = {mark_of_first(*result.first, want)};
   }
   if (!outputs.plots.empty()) document.groups = {std::move(outputs)};
   return document;

@@ -358,6 +358,33 @@ class ReplayedTrace(HasPlots, Page):
         cls.run_attest("replay", trace, "--html", cls.page)
 
 
+class HuntFindings(HasPlots, Page):
+    """The page of `attest hunt --html`: a finding of one tick, and one of 12."""
+
+    @classmethod
+    def make_page(cls, folder: pathlib.Path):
+        port = "fault:cascade-d-reversed+cascade-yaw-correction-fast"
+        options = ["--module", "rate_law,attitude_unit", "--profile", "v1.16.0", "--steps", "1"]
+        options += ["--seed", "3"]  # a seed with which a round finds both
+        cls.run_attest("hunt", "--port", port, *options, "--html", cls.page)
+
+    def test_each_finding_links_to_its_values(self):
+        links = self.run_in_page("[...document.querySelectorAll('th a')].map((a) => a.hash)")
+        self.assertEqual(len(links), 2)
+        for link in links:
+            caption = self.run_in_page(f"document.querySelector('{link} caption').textContent")
+            self.assertEqual(caption, f"{link[1:]}: values")
+
+    def test_a_finding_of_many_ticks_is_plotted_with_its_tolerance(self):
+        titles = self.run_in_page(
+            "[...document.querySelectorAll('#plots-of-page h2')].map((h) => h.textContent)"
+        )
+        self.assertEqual(titles, ["cascade_yaw_correction_fast"])
+        legend = self.run_in_page("document.querySelector('.legend-of-plot').textContent")
+        for word in ("want", "got", "allowed"):
+            self.assertIn(word, legend)
+
+
 class Comparison(HasPlots, Page):
     """The page of `attest compare --html`."""
 

@@ -23,7 +23,7 @@ load common
   has "cascade-d-reversed: adds D instead of subtracting it"
   grep -q '"fault": "cascade-d-reversed"' found.json
   grep -q '<testcase .*cascade_d_reversed' found.xml
-  grep -q 'cascade_d_reversed' found.html
+  grep -q 'cascade_d_reversed: values' found.html
   made=ours/cases/px4-v1.16.0/hunt/cascade_d_reversed.toml
   has "case: $made"
   [ "$(wc -l <$made)" -lt 40 ]

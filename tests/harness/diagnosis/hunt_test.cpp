@@ -77,6 +77,11 @@ TEST(Hunt, FindingsOfOneCauseAreOneFinding) {
   const HuntFinding& finding = run.findings.front();
   EXPECT_GT(finding.trials, 3u);
   EXPECT_LT(finding.trace.samples.size(), 8u);
+  // The port's answers end at the first deviation.
+  ASSERT_TRUE(finding.failure.first);
+  ASSERT_THAT(finding.got.samples, SizeIs(finding.failure.first->tick + 1));
+  EXPECT_EQ(value_of(channels()[finding.failure.first->channel], finding.got.samples.back()),
+            finding.failure.first->got);
   EXPECT_EQ(finding.failure.verdict, Verdict::fail);
   EXPECT_THAT(finding.toml, HasSubstr("Fill in"));
 }
@@ -271,12 +276,12 @@ TEST(Hunt, StepsBeforeAFailureAreThoseOfTheRoundsBefore) {
   const auto in_second = steps_before_failure(options, wrong_from_second_round());
   ASSERT_TRUE(in_second);
   EXPECT_EQ(*in_second, steps.at(0));
+  EXPECT_LT(traces, 2 * 128u);  // ended at the first failing trial
   options.workers.stop = [] { return true; };
   const auto stopped = steps_before_failure(options, wrong_from_second_round());
   ASSERT_FALSE(stopped);
   EXPECT_EQ(stopped.error().message, "interrupted");
 }
-  EXPECT_LT(traces, 2 * 128u);  // ended at the first failing trial
 
 // ---- silent topics ------------------------------------------------------------------------------
 
