@@ -23,6 +23,7 @@ set(packed_suite ${PROJECT_BINARY_DIR}/suite.zip)
 install(CODE "execute_process(COMMAND \"$<TARGET_FILE:attest_pack_suite>\"
         \"${PROJECT_SOURCE_DIR}\" \"${packed_suite}\" COMMAND_ERROR_IS_FATAL ANY)")
 install(FILES ${packed_suite} DESTINATION ${ATTEST_INSTALL_DATADIR})
+install(CODE "file(REMOVE \"${packed_suite}\")")  # a port that runs later must not find it
 # Excludes the results of builds in the source tree.
 install(
   DIRECTORY controller/starters

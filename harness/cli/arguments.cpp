@@ -176,12 +176,12 @@ void hide_suites(const Globals& globals) {
     roots.push_back(suite->root);
     if (suite->base) roots.push_back(*suite->base);
   }
-  if (const auto data = data_folder()) roots.push_back(suite_in(*data));
+  if (const auto data = data_folder()) roots.push_back(*data);
   for (const std::filesystem::path& root : roots) {
     if (const auto archive = archive_of(root); !archive.empty()) {
       globals.barrier->hidden.push_back(archive.string());
     }
-    for (const char* part : {"cases", "golden"}) {
+    for (const char* part : {"cases", "golden", packed_suite}) {
       globals.barrier->hidden.push_back((root / part).string());
     }
   }

@@ -2,14 +2,15 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <set>
+#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "harness/core/interrupt.hpp"
+#include "harness/core/suite_files.hpp"
 #include "harness/report/read_report.hpp"
 
 namespace attest::cli {
@@ -39,7 +40,7 @@ Result<std::vector<SelectedCase>> core_of_suite(const CaseFolders& folders,
                                                 std::vector<SelectedCase> cases, bool are_all) {
   std::set<std::string> ids;
   for (const std::filesystem::path& folder : folders) {
-    std::ifstream file(folder / "CORE");
+    std::istringstream file(read_suite_file(folder / "CORE").value_or(""));
     for (std::string line; std::getline(file, line);) {
       if (!line.empty() && line.front() != '#') ids.insert(line);
     }

@@ -15,8 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* packed_suite = "suite.zip";  // in data_folder()
-
 bool has_cases(const fs::path& folder) { return is_suite_folder(folder / "cases"); }
 
 bool names_a_base(const fs::path& folder) { return is_suite_file(folder / base_file); }
@@ -25,7 +23,9 @@ bool names_a_base(const fs::path& folder) { return is_suite_file(folder / base_f
 std::optional<fs::path> released_suite() {
   const auto data = data_folder();
   if (!data) return std::nullopt;
-  return suite_in(*data);
+  // An older installation in the same place had its suite in folders.
+  const fs::path archive = *data / packed_suite;
+  return archive_of(archive).empty() ? *data : archive;
 }
 
 // Errors: `root` is an archive that cannot be read.
@@ -42,7 +42,9 @@ Result<fs::path> base_of(const fs::path& folder) {
   if (text->find_first_not_of("\r\n", line.size()) != std::string::npos) {
     return fail_at(file.string(), "has a second line; it names one suite, in one line", 2, 1);
   }
-  const auto base = line == "released" ? released_suite() : suite_in(folder / line);
+  const fs::path archive = archive_of(folder);
+  const fs::path here = archive.empty() ? folder : archive.parent_path();
+  const auto base = line == "released" ? released_suite() : suite_in(here / line);
   if (base) {
     if (auto intact = check_archive(*base); !intact) return tl::unexpected(intact.error());
   }
@@ -176,7 +178,7 @@ std::optional<fs::path> data_folder() {
 
 fs::path suite_in(const fs::path& data) {
   const fs::path archive = data / packed_suite;
-  const bool is_packed = !archive_of(archive).empty() && !has_cases(data) && !names_a_base(data);
+  const bool is_packed = archive_of(archive) == archive && !has_cases(data) && !names_a_base(data);
   return is_packed ? archive : data;
 }
 

@@ -20,6 +20,9 @@ using VectorsByGroup = std::map<std::string, std::map<LoopRate, std::size_t>>;
 // The file in a suite's folder that names its base: another suite, whose cases the suite also has.
 inline constexpr const char* base_file = "BASE";
 
+// The archive in data_folder(), or in a folder that --suite names.
+inline constexpr const char* packed_suite = "suite.zip";
+
 // The hash of a suite, and those of the files from which it was computed.
 struct SuiteHash {
   std::string sha256;

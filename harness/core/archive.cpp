@@ -26,8 +26,7 @@ namespace fs = std::filesystem;
 constexpr const char* remedy =
     "restore the archive, or install attest anew; --suite DIR names a suite in a folder";
 
-// ---- the bytes of the archive, as minizip asks for them
-// -------------------------------------------
+// ---- the bytes of the archive, as minizip asks for them -----------------------------------------
 
 class Bytes {
  public:
@@ -42,7 +41,10 @@ class Bytes {
     file_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     struct stat now {};
     if (file_ < 0 || ::fstat(file_, &now) != 0) {
-      return fail_at(name_.string(), fmt::format("cannot open the file: {}", std::strerror(errno)));
+      const int reason = errno;
+      close();
+      return fail_at(name_.string(),
+                     fmt::format("cannot open the file: {}", std::strerror(reason)));
     }
     if (first_.st_ino == 0) first_ = now;
     const bool same = now.st_ino == first_.st_ino && now.st_dev == first_.st_dev &&
@@ -50,15 +52,15 @@ class Bytes {
                       now.st_mtim.tv_sec == first_.st_mtim.tv_sec &&
                       now.st_mtim.tv_nsec == first_.st_mtim.tv_nsec;
     if (same) return {};
-    release();
+    close();
     return fail_at(name_.string(),
                    "changed during the run; run again while no program writes to it");
   }
 
   void release() {
-    if (file_ >= 0 && !stays_open_) ::close(std::exchange(file_, -1));
-    ::explicit_bzero(ahead_.data(),
-                     ahead_size_);  // may have bytes of a neighbour, such as a golden
+    if (!stays_open_) close();
+    // They may be of a neighbour, such as a golden.
+    ::explicit_bzero(ahead_.data(), ahead_size_);
     ahead_size_ = 0;
   }
 
@@ -68,9 +70,12 @@ class Bytes {
   }
 
   // Keeps the rest of the archive, which is the directory, because minizip reads it byte by byte.
+  // Does not if the rest is larger than a directory may be.
   void keep_from(std::uint64_t begin) {
+    const std::uint64_t rest = size() - std::min(begin, size());
+    if (rest > most_text_bytes) return;
     kept_begin_ = begin;
-    kept_.resize(size() - std::min(begin, size()));
+    kept_.resize(rest);
     kept_.resize(read_from(begin, kept_.data(), kept_.size()));
   }
 
@@ -104,6 +109,10 @@ class Bytes {
   }
 
  private:
+  void close() {
+    if (file_ >= 0) ::close(std::exchange(file_, -1));
+  }
+
   std::uint64_t size() const { return static_cast<std::uint64_t>(first_.st_size); }
 
   std::size_t read_from(std::uint64_t begin, char* to, std::size_t count) const {
@@ -120,8 +129,11 @@ class Bytes {
 
   // Whether `part`, which begins at `begin`, has the `count` bytes at at_; then copies them.
   bool copy_from(std::string_view part, std::uint64_t begin, char* to, std::size_t count) const {
-    if (at_ < begin || at_ + count > begin + part.size()) return false;
-    std::copy_n(part.data() + (at_ - begin), count, to);
+    // A damaged archive may have any place in it, so at_ + count may be larger than 64 bits.
+    if (at_ < begin || at_ - begin > part.size()) return false;
+    const std::string_view from = part.substr(at_ - begin);
+    if (count > from.size()) return false;
+    std::copy_n(from.data(), count, to);
     return true;
   }
 
@@ -156,8 +168,7 @@ class Bytes {
   std::uint64_t ahead_begin_ = 0;
 };
 
-// ---- the list of the files
-// ------------------------------------------------------------------------
+// ---- the list of the files ----------------------------------------------------------------------
 
 struct Close {
   void operator()(void* zip) const { unzClose(zip); }
@@ -280,6 +291,7 @@ std::shared_ptr<const void> Archive::keep_open() const {
 const std::vector<std::string>& Archive::names() const { return contents_->names; }
 
 Result<std::string> Archive::read(const std::string& name, const fs::path& file) const {
+  if (name.empty()) return fail_at(file.string(), "is an archive; name a file in it");
   const auto found = std::ranges::lower_bound(names(), name);
   if (found == names().end() || *found != name) {
     return fail_at(file.string(), "cannot open the file: No such file or directory");

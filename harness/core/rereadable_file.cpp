@@ -46,14 +46,21 @@ ssize_t read_when_ready(int pipe, std::string& block) {
   return -1;
 }
 
+// Returns the error; empty if all is written. `ulimit -f` can shorten the write to a file in
+// memory.
+std::string write_all(int copy, const std::string& bytes) {
+  const ssize_t written = ::write(copy, bytes.data(), bytes.size());
+  if (written < 0) return std::strerror(errno);
+  const bool is_whole = static_cast<std::size_t>(written) == bytes.size();
+  return is_whole ? "" : "it is larger than a file may be (`ulimit -f`)";
+}
+
 // Copies `begin`, then the rest of the pipe. Returns the error; empty if all is copied.
 std::string copy_all(int pipe, int copy, std::string begin) {
   std::string block = std::move(begin);
   std::size_t copied = 0;
   while (copied <= most_bytes) {
-    // write() to a file in memory takes all bytes or fails.
-    const ssize_t written = ::write(copy, block.data(), block.size());
-    if (written < 0) return std::strerror(errno);
+    if (std::string wrong = write_all(copy, block); !wrong.empty()) return wrong;
     copied += block.size();
     block.resize(std::size_t{64} * 1024);
     const ssize_t count = read_when_ready(pipe, block);
@@ -95,9 +102,9 @@ Result<RereadableFile> RereadableFile::open(const std::filesystem::path& path,
   if (is_packed) {
     const auto bytes = read_suite_file(path);
     if (!bytes) return tl::unexpected(bytes.error());
-    // write() to a file in memory takes all bytes or fails.
-    if (::write(copy, bytes->data(), bytes->size()) >= 0) return file;
-    return fail_at(path.string(), fmt::format("no memory: {}", std::strerror(errno)));
+    const std::string wrong = write_all(copy, *bytes);
+    if (!wrong.empty()) return fail_at(path.string(), "cannot be copied to memory: " + wrong);
+    return file;
   }
   const std::string wrong = copy_from(path, copy, writer_within);
   if (!wrong.empty()) return fail_at(path.string(), "cannot read the pipe: " + wrong);

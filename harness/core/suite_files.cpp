@@ -161,7 +161,8 @@ bool is_suite_file(const fs::path& path) {
   const auto place = place_of(path);
   if (place && *place) return std::ranges::binary_search((*place)->archive.names(), (*place)->name);
   std::error_code ignored;
-  return fs::exists(fs::symlink_status(path, ignored)) && !fs::is_directory(path, ignored);
+  return fs::symlink_status(path, ignored).type() != fs::file_type::not_found &&
+         !fs::is_directory(path, ignored);
 }
 
 bool is_suite_folder(const fs::path& path) {

@@ -17,25 +17,32 @@ has() {
   }
 }
 
-# same COMMAND...: has the same output with the archive and with the folder of the source tree.
+# same STATUS COMMAND...: exits with it, and has the same output, with the archive and with the
+# folder of the source tree.
 same() {
-  local times='s/ in [0-9.]* s$//'
+  local times='s/ in [0-9.]* s$//' wanted=$1
+  shift
   echo "$*"
-  "$attest" "$@" 2>&1 | sed "s|$suite|SUITE|g; $times" >of_archive
-  ATTEST_SUITE=$SOURCE "$attest" "$@" 2>&1 | sed "s|$SOURCE|SUITE|g; $times" >of_folder
+  run "$attest" "$@"
+  [ "$status" -eq "$wanted" ]
+  sed "s|$suite|SUITE|g; $times" <<<"$output" >of_archive
+  ATTEST_SUITE=$SOURCE run "$attest" "$@"
+  [ "$status" -eq "$wanted" ]
+  sed "s|$SOURCE|SUITE|g; $times" <<<"$output" >of_folder
   diff of_archive of_folder
 }
 
 @test "the archive gives the same results as the folder" {
   [ "$(cd "$INSTALLED/share/attest" && echo *)" = "ci include schemas starters suite.zip" ]
-  same list
-  same list --vehicles
-  same doctor
-  same run --filter 'tpa/*@250hz' --level exact
-  same run --filter 'flight/gust@250hz*' --json -
-  same sim hover --rate 250:1000
-  same run --port fault:tpa-missing --filter 'px4-v1.5.5/tpa/*@250hz' --code-quality -
-  same run --filter 'no-such-case'
+  same 0 list
+  same 0 list --vehicles
+  same 0 list --core
+  same 0 doctor
+  same 0 run --filter 'tpa/*@250hz' --level exact
+  same 0 run --filter 'flight/gust@250hz*' --json -
+  same 0 sim hover --rate 250:1000
+  same 1 run --port fault:tpa-missing --filter 'px4-v1.5.5/tpa/*@250hz' --code-quality -
+  same 2 run --filter 'no-such-case'
 }
 
 @test "a case in the archive is named by its path" {

@@ -195,11 +195,26 @@ TEST_F(Damaged, NamesThatLeadOutsideAreRefused) {
   EXPECT_EQ(error(), path_.string() + ": has two files `a`" + remedy_);
 }
 
+// A place that, with the bytes from there on, is larger than 64 bits.
+TEST_F(Damaged, PlacesOutsideOfTheArchiveAreRefused) {
+  std::string bytes = bytes_;
+  // The locator of ZIP64: signature, number of the disk, place of the directory's end, disks.
+  const std::string locator =
+      std::string("PK\6\7", 4) + std::string(4, '\0') + std::string(8, '\xff') + "\1";
+  bytes.insert(bytes.rfind("PK\5\6"), locator + std::string(3, '\0'));
+  write_file(path_, bytes);
+  EXPECT_THAT(error(), HasSubstr(remedy_));
+}
+
 TEST_F(Damaged, ChangedArchiveIsNotReadOn) {
   ASSERT_EQ(error(), "none");
   pack({{"a", "of another archive"}}, path_);
-  EXPECT_EQ(error(),
-            path_.string() + ": changed during the run; run again while no program writes to it");
+  const std::string changed =
+      path_.string() + ": changed during the run; run again while no program writes to it";
+  EXPECT_EQ(error(), changed);
+  const auto open = keep_suite_open(path_);
+  EXPECT_EQ(error(), changed);
+  EXPECT_EQ(error(), changed);
 }
 
 }  // namespace
