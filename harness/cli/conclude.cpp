@@ -98,8 +98,12 @@ int conclude(const RunResult& run, const Examined& examined, const ReportOptions
   } else if (options.diagnose && run.failed()) {
     diagnosis = diagnosed(run, examined);
   }
+  if (interrupted()) forget_interrupt();  // the diagnosis has said so
   if (examined.save_traces) examined.save_traces(diagnosis ? diagnosis->specific_case : "");
-  if (interrupted()) forget_interrupt();
+  if (interrupted()) {
+    forget_interrupt();
+    fmt::print(stderr, "attest: note: interrupted; the page lacks plots\n");
+  }
   // Before the summary is printed: if the reader of stdout closes the pipe early, SIGPIPE ends this
   // process.
   const auto written = write_reports(reports, {run, diagnosis, examined.traces});

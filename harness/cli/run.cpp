@@ -119,6 +119,7 @@ void run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
   run.errors = std::move(outcome.errors);
   run.stopped_early = outcome.stopped_early || watch.hangs() || interrupted();
   if (run.stopped_early) run.not_run = not_run(plan);
+  if (run.not_run.empty()) run.stopped_early = false;  // Ctrl-C after the last vector
   if (auto same = check_port(plan.host); !same) run.errors.push_back(same.error());
 }
 
@@ -151,6 +152,7 @@ int run_command(const RunOptions& given, const Globals& globals) {
     if (run.results.empty()) return report_error({"interrupted; no vector was run"});
     fmt::print(stderr, "attest: interrupted; the reports have the vectors that were run\n");
     forget_interrupt();
+    if (plan->expected) plan->expected->apply(false, run);
     remember_last_run(run);
     ReportOptions without_diagnosis = options.report;
     without_diagnosis.diagnose = false;

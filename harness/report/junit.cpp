@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -124,9 +125,8 @@ pugi::xml_node add_test(pugi::xml_node suite, const std::string& classname, cons
   return test;
 }
 
-std::string suite_name(const VectorResult& result) {
-  return one_line(result.profile + "." + result.group);
-}
+// `of`: a VectorResult or NotRun.
+std::string suite_name(const auto& of) { return one_line(of.profile + "." + of.group); }
 
 // Each failure contains the diagnosis, because on the page of one test CI servers do not show the
 // rest of the run.
@@ -159,19 +159,16 @@ pugi::xml_node add_suite(pugi::xml_node root, const std::string& name, const Cou
   return suite;
 }
 
-// Of the profile and group of `result`.
-std::size_t vectors_not_run(const RunResult& run, const VectorResult& result) {
-  std::size_t left = 0;
-  for (const NotRun& one : run.not_run) {
-    if (one.profile == result.profile && one.group == result.group) left += one.vectors;
-  }
+// Suite -> its vectors that were not run.
+std::map<std::string, std::size_t> not_run_by_suite(const RunResult& run) {
+  std::map<std::string, std::size_t> left;
+  for (const NotRun& one : run.not_run) left[suite_name(one)] += one.vectors;
   return left;
 }
 
 // Else a suite of which only a part was run looks like one that passed.
-void add_not_run(pugi::xml_node suite, const VectorResult& result, std::size_t left) {
-  if (left == 0) return;
-  const pugi::xml_node test = add_test(suite, suite_name(result), "not_run", 0);
+void add_not_run(pugi::xml_node suite, const std::string& name, std::size_t left) {
+  const pugi::xml_node test = add_test(suite, name, "not_run", 0);
   const std::string message = counted(left, "vector") + " not run: the run was stopped";
   add_outcome(test, "skipped", name_of(Conclusion::stopped), message, message);
 }
@@ -207,17 +204,22 @@ std::string junit_report(const RunResult& run, const std::optional<Diagnosis>& d
       [](const VectorResult& a, const VectorResult& b) {
         return a.profile == b.profile && a.group == b.group;
       });
+  auto not_run = not_run_by_suite(run);
+  for (std::size_t i = 0; i < not_run.size(); ++i) all.add_skipped();
   for (const Together& suite : suites) {
+    const std::string name = suite_name(*suite.front());
+    const auto left = not_run.extract(name);
     Counts counts;
     for (const VectorResult* result : suite) counts.add(*result);
-    const std::size_t left = vectors_not_run(run, *suite.front());
-    if (left > 0) {
-      counts.add_skipped();
-      all.add_skipped();
-    }
-    const pugi::xml_node node = add_suite(root, suite_name(*suite.front()), counts, run);
+    if (left) counts.add_skipped();
+    const pugi::xml_node node = add_suite(root, name, counts, run);
     for (const VectorResult* result : suite) add_result(node, *result, run, diagnosis);
-    add_not_run(node, *suite.front(), left);
+    if (left) add_not_run(node, name, left.mapped());
+  }
+  for (const auto& [name, left] : not_run) {  // of these suites no vector was run
+    Counts counts;
+    counts.add_skipped();
+    add_not_run(add_suite(root, name, counts, run), name, left);
   }
   add_environment(root, run);
   // No `skipped` here: the schema of Jenkins' xUnit plugin does not allow it and rejects the file.

@@ -33,10 +33,10 @@
 
 namespace attest {
 
-// "flight.ulg"; for a unit of v1.14 to v1.18 "flight.ulg: attitude unit".
 // What a pass by a log says, and the command that lists the mistakes that the log shows.
 std::string meaning_of_pass(const std::string& log);
 
+// "flight.ulg"; for a unit of v1.14 to v1.18 "flight.ulg: attitude unit".
 std::string title_of(const LoggedUnit& log);
 
 // The agreement of each topic of a unit. The lines below the table say how many of the deviations

@@ -47,7 +47,7 @@ HuntFinding finding_of(std::size_t ticks, Level level = Level::numeric,
 Document document_of(HuntFinding finding) {
   HuntReport report;
   report.found.findings.push_back(std::move(finding));
-  return hunt_document(report);
+  return hunt_document(report, HuntCases::left_out);
 }
 
 std::vector<std::string> texts_of(const std::vector<Cell>& row) {
