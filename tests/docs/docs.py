@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs the commands of a document as its reader would.
 
-    docs.py [--bin DIR] [--prefix DIR] [--need TOOL]... --scratch DIR DOCUMENT
+    docs.py [--bin DIR] [--prefix DIR] [--need TOOL]... [--extract-suite] --scratch DIR DOCUMENT
 
 Takes the ```sh blocks of DOCUMENT in order, in one shell, in a fresh copy of the repository below
 the scratch directory: at its root, or for a starter in the starter's folder, where its reader is.
@@ -174,24 +174,36 @@ def environment_of(arguments: argparse.Namespace) -> dict[str, str]:
     return environment
 
 
+def extracted_suite(scratch: pathlib.Path, environment: dict[str, str]) -> pathlib.Path:
+    """A copy of the installed suite as a folder, because `bless` does not change an archive."""
+    suite = scratch.with_name(scratch.name + ".suite")
+    shutil.rmtree(suite, ignore_errors=True)
+    subprocess.run(
+        ["attest", "list", "--extract", suite], env=environment, check=True, capture_output=True
+    )
+    return suite
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("document", help="relative to the root of the repository")
     parser.add_argument("--bin", type=pathlib.Path, help="folder of the attest binary")
     parser.add_argument("--prefix", type=pathlib.Path, help="where attest is installed")
     parser.add_argument("--need", action="append", default=[], help="skip without this program")
+    parser.add_argument(
+        "--extract-suite", action="store_true", help="for documents that bless goldens"
+    )
     parser.add_argument("--scratch", type=pathlib.Path, required=True)
     arguments = parser.parse_args()
     for tool in arguments.need:
         if shutil.which(tool) is None:
             print(f"skipped: {tool} is not installed")
             return SKIPPED
-    return run(
-        arguments.document,
-        repository.ROOT,
-        arguments.scratch.resolve(),
-        environment_of(arguments),
-    )
+    scratch = arguments.scratch.resolve()
+    environment = environment_of(arguments)
+    if arguments.extract_suite:
+        environment["ATTEST_SUITE"] = str(extracted_suite(scratch, environment))
+    return run(arguments.document, repository.ROOT, scratch, environment)
 
 
 if __name__ == "__main__":
