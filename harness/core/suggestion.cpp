@@ -44,6 +44,13 @@ std::string suggestion(std::string_view unknown, const std::vector<std::string>&
       return fmt::format("; did you mean `{}`?", candidate);
     }
   }
+  for (const std::string& candidate : candidates) {  // px4-v1.16 and v1.16 for px4-v1.16.0
+    const std::string begin = std::string(unknown) + ".";
+    const std::size_t part = candidate.find('-') + 1;  // 0: it has one part
+    if (candidate.starts_with(begin) || candidate.compare(part, begin.size(), begin) == 0) {
+      return fmt::format("; did you mean `{}`?", candidate);
+    }
+  }
   const std::size_t allowed = (unknown.size() + 1) / 3;
   const std::string* best = nullptr;
   std::size_t best_distance = allowed + 1;

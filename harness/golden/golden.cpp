@@ -15,8 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string how_to_bless(const std::string& case_id) {
-  return fmt::format("`attest bless --filter '{}' --reason \"...\"` makes it", case_id);
+// `goldens`: the folder `golden` of the suite.
+std::string how_to_bless(const std::string& case_id, const fs::path& goldens) {
+  return fmt::format("`attest --suite '{}' bless --filter '{}' --reason \"...\"` makes it",
+                     (goldens.has_parent_path() ? goldens.parent_path() : ".").string(), case_id);
 }
 
 // The text of a golden: in the file at its place, or in the new one that a killed bless left next
@@ -123,13 +125,13 @@ Result<Golden> Goldens::open(const Case& the_case) const {
   const fs::path file = golden_file(root_, key);
   const auto origin = origins->find(key);
   if (origin == origins->end()) {
-    return fail_at(file.string(),
-                   fmt::format("no golden for {}; {}", the_case.id(), how_to_bless(the_case.id())));
+    return fail_at(file.string(), fmt::format("no golden for {}; {}", the_case.id(),
+                                              how_to_bless(the_case.id(), root_)));
   }
   if (origin->second.case_sha256 != the_case.sha256) {
     return fail_at(file.string(),
                    fmt::format("the golden is stale: {} has changed since it was blessed; {} anew",
-                               the_case.file.string(), how_to_bless(the_case.id())));
+                               the_case.file.string(), how_to_bless(the_case.id(), root_)));
   }
   const auto text = blessed_text(file, the_case.profile, origin->second);
   if (!text) return tl::unexpected(text.error());

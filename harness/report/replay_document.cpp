@@ -191,8 +191,8 @@ Document log_document(const FlightLog& log, const std::vector<LogResult>& result
     const VectorResult& result = results[i].result;
     const std::string title(info_of(unit.module).title);
     const Trace& logged = results[i].single_steps ? results[i].want : unit.trace;
-    ticks.push_back(fmt::format("{} {}", logged.samples.size(),
-                                results[i].single_steps ? "single steps" : "ticks"));
+    ticks.push_back(results[i].single_steps ? counted(result.ticks, "single step")
+                                            : counted(unit.trace.samples.size(), "tick"));
     document.facts.push_back({title, std::string(name_of(result.verdict))});
     if (!result.reason.empty()) {
       document.notes.push_back({title + ": " + result.reason, fails_a_run(result.verdict)});

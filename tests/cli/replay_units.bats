@@ -80,6 +80,10 @@ $2 rate unit" ] || {
   [ "${lines[-2]}" = "$meaning" ]
   grep -qF "$meaning" page.html
   grep -q "passes if at least 98% of the single steps" page.html
+  local judged  # of each unit; the page has the same numbers
+  judged=$(grep -oE "[0-9]+ single steps, log" <<<"$output" | grep -oE "^[0-9]+")
+  [ -n "$judged" ]
+  for steps in $judged; do grep -q "\b$steps single steps\b" page.html; done
   [ "$(grep -cF "\"pass_means\": \"$meaning\"" replay.json)" -eq 2 ]
 }
 

@@ -117,7 +117,7 @@ quick=(--group battery --group rates --rate 100,250,8000)
   [ "$status" -eq 2 ]
   has "no golden for px4-v1.5.5/attitude/roll"
   [ "$(grep -c "no golden" <<<"$output")" -eq 1 ]
-  has "attest bless"
+  has "attest --suite 'suite' bless --filter 'px4-v1.5.5/attitude/roll'"
 }
 
 @test "a golden of another version of the case is stale" {
@@ -126,7 +126,7 @@ quick=(--group battery --group rates --rate 100,250,8000)
   run "$ATTEST" --suite suite run
   [ "$status" -eq 2 ]
   has "stale"
-  has "attest bless"
+  has "attest --suite 'suite' bless"
 }
 
 @test "a golden that somebody edited is refused" {
@@ -438,7 +438,7 @@ PATHS
   looked --suite . run "${failing[@]}"
   begin_with "\(cases\|golden\)/px4"
 
-  run "$ATTEST" stress --rates 250 --duration 0.1 --port "lib:$PORTS/port_crash.so" \
+  run "$ATTEST" stress --rates 250 --duration 1 --port "lib:$PORTS/port_crash.so" \
     --junit stress.xml
   [ "$status" -eq 1 ]
   [ "$(paths_of stress.xml)" = "$SOURCE/cases/px4-v1.5.5/flight/hover.toml" ]

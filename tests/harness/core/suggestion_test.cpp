@@ -36,6 +36,13 @@ TEST(Suggestion, NamesACandidateOfWhichTheLastPartIsGiven) {
   EXPECT_EQ(suggestion("5", {"px4-v1.5.5"}), "");
 }
 
+TEST(Suggestion, NamesACandidateOfWhichTheBeginningIsGiven) {
+  const std::vector<std::string> profiles = {"px4-v1.17", "px4-v1.5.5", "px4-v1.16.0"};
+  EXPECT_EQ(suggestion("px4-v1.16", profiles), "; did you mean `px4-v1.16.0`?");
+  EXPECT_EQ(suggestion("v1.5", profiles), "; did you mean `px4-v1.5.5`?");
+  EXPECT_EQ(suggestion("px4-v1.1", profiles), "; did you mean `px4-v1.17`?");  // by its letters
+}
+
 TEST(Suggestion, AllowsAThirdOfTheLength) {
   EXPECT_EQ(suggestion("control_state.q[0]", {"in/control_state.q[0]"}),
             "; did you mean `in/control_state.q[0]`?");
