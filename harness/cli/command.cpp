@@ -23,7 +23,15 @@ Option Option::range(int least, int most) const {
   return Option(*option_->check(CLI::Range(least, most)));
 }
 Option Option::at_least_zero() const { return Option(*option_->check(CLI::NonNegativeNumber)); }
-Option Option::positive() const { return Option(*option_->check(CLI::PositiveNumber)); }
+// Not CLI::PositiveNumber, whose message has the largest double with all its 309 digits.
+Option Option::positive() const {
+  const auto wrong = [](const std::string& given) {
+    double number = 0;
+    const bool is_positive = CLI::detail::lexical_cast(given, number) && number > 0;
+    return is_positive ? std::string() : fmt::format("`{}` is no number above 0", given);
+  };
+  return Option(*option_->check(CLI::Validator(wrong, "POSITIVE")));
+}
 Option Option::one_of(const std::vector<std::string>& values) const {
   return Option(*option_->check(CLI::IsMember(values)));
 }

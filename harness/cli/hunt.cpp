@@ -41,7 +41,7 @@ struct HuntCommandOptions {
   bool verbose = false;
 };
 
-constexpr double usual_steps = 1e6;
+constexpr double usual_steps = 1e6, most_steps = 1e15;
 
 Result<ModuleSet> modules_of(const HuntCommandOptions& options) {
   ModuleSet chosen;
@@ -123,8 +123,8 @@ Result<HuntPlan> make_hunt_plan(const HuntCommandOptions& options) {
   plan.hunt.subjects = *std::move(subjects);
   plan.hunt.level = *level;
   plan.hunt.seed = options.seed;
-  const double steps = options.steps.value_or(options.seconds ? 1e15 : usual_steps);
-  plan.hunt.least_steps = static_cast<std::size_t>(steps);
+  const double steps = options.steps.value_or(options.seconds ? most_steps : usual_steps);
+  plan.hunt.least_steps = static_cast<std::size_t>(std::min(steps, most_steps));
   plan.hunt.fail_fast = options.fail_fast;
   plan.hunt.workers.processes = options.jobs;
   plan.hunt.workers.stop = interrupted;

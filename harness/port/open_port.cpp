@@ -61,10 +61,14 @@ Result<std::unique_ptr<Port>> refuse_unknown(const std::string& specification) {
                     specification, names_of_port_kinds(true)));
   }
   const std::filesystem::path path = specification;
+  if (std::filesystem::is_directory(path, unreadable)) {
+    return fail(
+        fmt::format("{}: is a folder, not a port; name the library or program in it, such "
+                    "as {}, or start its script {}",
+                    specification, (path / "port.so").string(), (path / "check").string()));
+  }
   if (path.has_extension() || path.has_parent_path()) {
-    const bool is_folder = std::filesystem::is_directory(path, unreadable);
-    return fail(fmt::format("{}: {}; a port is a file or one of {}", specification,
-                            is_folder ? "is a folder, not a port" : "no such file",
+    return fail(fmt::format("{}: no such file; a port is a file or one of {}", specification,
                             names_of_port_kinds(true)));
   }
   return fail(

@@ -236,6 +236,10 @@ TASKS
   run "$ATTEST" run ./rust.so
   [ "$status" -eq 2 ]
   has "./rust.so: is a folder, not a port"
+  mkdir mine
+  run "$ATTEST" run mine
+  [ "$status" -eq 2 ]
+  has "such as mine/port.so, or start its script mine/check"
 }
 
 @test "the C starter conforms to the bit" {
