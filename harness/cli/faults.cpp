@@ -109,8 +109,7 @@ Result<std::vector<R>> results_of(const Jobs<R>& jobs, int processes, bool is_qu
 
 Result<void> hunt_faults(const FaultOptions& options, Level level, bool is_quiet,
                          std::vector<FaultFinding>& findings) {
-  constexpr double limit = 1e15;
-  const double steps = std::min(*std::ranges::max_element(options.hunt), limit);
+  const double steps = std::min(*std::ranges::max_element(options.hunt), 1e15);
   const auto most = static_cast<std::size_t>(steps);
   Jobs<HuntCatch> jobs;
   for (const FaultFinding& finding : findings) {
