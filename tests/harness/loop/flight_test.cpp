@@ -119,7 +119,7 @@ TEST(UnitsFor, FlightsOfAPortOfTheLawsAloneAreUnsupported) {
       units_for(*parse_case(source_folder / "cases/px4-v1.16.0/flight/hover.toml"), port);
   ASSERT_FALSE(units);
   EXPECT_EQ(units.error().kind, PortFault::Kind::unsupported);
-  EXPECT_THAT(units.error().what, testing::HasSubstr("has no rate unit"));
+  EXPECT_THAT(units.error().what, testing::HasSubstr("has no module rate_unit"));
 }
 
 }  // namespace
