@@ -16,7 +16,8 @@ namespace attest {
 namespace {
 
 bool does_not_have_it(const PortFault& fault) {
-  return fault.kind == PortFault::Kind::unsupported || fault.kind == PortFault::Kind::profile;
+  using enum PortFault::Kind;
+  return fault.kind == profile || fault.kind == module || fault.kind == unsupported;
 }
 
 // The outputs of a trace at some ticks. `extra`: further channels that are kept.

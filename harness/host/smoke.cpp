@@ -71,7 +71,8 @@ class Smoke {
     ModuleUnderTest subject = subject_;
     subject.instances = instances;
     const auto fault = host_->drive(subject, trace);
-    const bool is_unsupported = fault && fault->kind == PortFault::Kind::unsupported;
+    using enum PortFault::Kind;
+    const bool is_unsupported = fault && (fault->kind == module || fault->kind == unsupported);
     unsupported_ = is_unsupported ? fault->what : "";
     return fault && !is_unsupported ? fault->what : "";
   }

@@ -56,8 +56,9 @@ struct PortUnits {
 // Makes the units of a flight by `port`. A port of the cascade may have only one of the two units:
 // then the reference makes the missing one. REQUIRES: a flight. Faults:
 // - Kind::profile: `port` makes no unit that the case needs
-// - Kind::unsupported: `port` makes each of the two units, but not both at the same time; or it
-//   makes another module of the profile, such as a law alone, and no unit that the case needs
+// - Kind::module: it makes another module of the profile, such as a law alone, and no unit that the
+//   case needs
+// - Kind::unsupported: it makes each of the two units, but not both at the same time
 tl::expected<PortUnits, PortFault> units_for(const Case& the_case, Port& port);
 
 // Flies `the_case`, at the times that the case schedules, or at those of `timing`. REQUIRES: a

@@ -197,9 +197,9 @@ PortFault lacks_module(Port& port, const ModuleUnderTest& subject) {
   const bool has_profile =
       find_profile(subject.profile) ? makes_another(port, subject) : info.extension != nullptr;
   if (!has_profile) return no_profile(subject);
-  std::string what = fmt::format("does not apply to this port: it has no module {}", info.name);
+  std::string what = fmt::format("the port has no module {}", info.name);
   if (info.extension) what += fmt::format(" (extension {})", info.extension);
-  return {PortFault::Kind::unsupported, 0, what};
+  return {PortFault::Kind::module, 0, what};
 }
 
 PortFault makes_none(Port& port, const ModuleUnderTest& subject) {
@@ -209,9 +209,9 @@ PortFault makes_none(Port& port, const ModuleUnderTest& subject) {
         fmt::format("the port makes no mixer `{}` of profile {}", subject.mixer, subject.profile)};
   }
   if (!makes_another(port, subject)) return no_profile(subject);
-  return {PortFault::Kind::unsupported, 0,
-          fmt::format("does not apply to this port: it makes no module {} of profile {}",
-                      info_of(subject.module).name, subject.profile)};
+  return {PortFault::Kind::module, 0,
+          fmt::format("the port makes no module {} of profile {}", info_of(subject.module).name,
+                      subject.profile)};
 }
 
 PortFault makes_one_profile(const std::string& profile, const std::string& other) {

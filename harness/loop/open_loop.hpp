@@ -38,12 +38,12 @@ struct ModuleUnderTest {
 ModuleUnderTest subject_of(const Case& the_case);
 
 // Makes a unit of the subject's module, in its power-on state. The port must outlive the unit.
-// Faults, at tick 0: Kind::profile, Kind::unsupported.
+// Faults, at tick 0: Kind::profile, Kind::module, Kind::unsupported.
 tl::expected<std::unique_ptr<Unit>, PortFault> make_unit(Port& port,
                                                          const ModuleUnderTest& subject);
 
-// The fault of a port that made no unit of the subject's module. Kind::profile, or
-// Kind::unsupported: the port makes another module of that profile, such as a law alone.
+// The fault of a port that made no unit of the subject's module. Kind::profile; Kind::module, if
+// the port makes another module of that profile, such as a law alone; Kind::unsupported of a mixer.
 PortFault why_no_unit(Port& port, const ModuleUnderTest& subject);
 
 // Steps a fresh instance of the subject's module through the trace. `subject.instances` says which

@@ -21,7 +21,8 @@ struct PortFault {
   // (trace_message.hpp). The judge's process finds the others itself.
   enum class Kind {
     profile,      // the profile is not supported, nor was it when the port was described
-    unsupported,  // ATTEST_UNSUPPORTED; a module or an instance that it does not make
+    module,       // it has no such module, or none of the profile
+    unsupported,  // ATTEST_UNSUPPORTED; a mixer or an instance that it does not make
     failed,       // ATTEST_FAILED; ATTEST_INVALID from another function than set_parameter
     refused,      // ATTEST_INVALID from set_parameter: a name or a value that the port refuses
     protocol,     // broke the rules of the ABI

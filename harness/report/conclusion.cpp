@@ -40,16 +40,6 @@ std::string setting(const RunResult& run) {
   return fmt::format("{}{}, {}", out, name_of(run.level), counted(run.rates.size(), "rate"));
 }
 
-// Why a vector that was not judged does not apply to the port: "it has no module mixer (extension
-// attest.mixer.v1)". Empty for other vectors.
-std::string_view why_not_applicable(const VectorResult& result) {
-  constexpr std::string_view does_not_apply = "does not apply to this port: ";
-  if (is_judged(result.verdict)) return {};
-  const std::string_view why = result.reason;
-  if (why.starts_with(does_not_apply)) return why.substr(does_not_apply.size());
-  return why.starts_with("the port does not support profile ") ? why : std::string_view();
-}
-
 // "47 need --level exact, 30 do not apply to this port, 1 skip": what was not judged or expected to
 // fail.
 std::string counted_apart(const RunResult& run) {
@@ -58,7 +48,7 @@ std::string counted_apart(const RunResult& run) {
     if (result.verdict == Verdict::pass || fails_a_run(result.verdict)) continue;
     std::string what(name_of(result.verdict));
     if (result.exact_only) what = "need --level exact";
-    if (!why_not_applicable(result).empty()) what = "do not apply to this port";
+    if (!result.applies) what = "do not apply to this port";
     auto known = std::ranges::find(needs, what, &std::pair<std::string, std::size_t>::first);
     if (known == needs.end()) known = needs.emplace(needs.end(), what, 0);
     ++known->second;
@@ -85,14 +75,13 @@ std::string cases_of(const Together& group) {
 // "  28 do not apply to this port:", and a line for each reason.
 std::string not_applicable(const RunResult& run) {
   const auto reasons = grouped(
-      run, [](const VectorResult& result) { return !why_not_applicable(result).empty(); },
+      run, [](const VectorResult& result) { return !result.applies; },
       [](const VectorResult& a, const VectorResult& b) { return a.reason == b.reason; });
   std::size_t count = 0;
   std::string lines;
   for (const Together& group : reasons) {
     count += group.size();
-    lines +=
-        fmt::format("      {}: {}\n", group.size(), one_line(why_not_applicable(*group.front())));
+    lines += fmt::format("      {}: {}\n", group.size(), one_line(group.front()->reason));
   }
   return count == 0 ? "" : fmt::format("  {} do not apply to this port:\n{}", count, lines);
 }
@@ -166,7 +155,7 @@ std::string counted_apart_text(const RunResult& run) {
     const auto groups = grouped(
         run,
         [verdict](const VectorResult& result) {
-          return result.verdict == verdict && why_not_applicable(result).empty();
+          return result.verdict == verdict && result.applies;
         },
         [](const VectorResult& a, const VectorResult& b) { return a.reason == b.reason; });
     for (const Together& group : groups) {

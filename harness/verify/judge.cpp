@@ -32,8 +32,15 @@ void judge(const PortFault& fault, VectorResult& result) {
   result.reason = fault.what;
   switch (fault.kind) {
     case PortFault::Kind::profile:
+      result.applies = false;
+      result.verdict = Verdict::skip;
+      return;
     case PortFault::Kind::unanswered:
       result.verdict = Verdict::skip;
+      return;
+    case PortFault::Kind::module:
+      result.applies = false;
+      result.verdict = Verdict::unsupported;
       return;
     case PortFault::Kind::unsupported:
       result.verdict = Verdict::unsupported;

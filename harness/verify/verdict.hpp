@@ -85,6 +85,8 @@ struct VectorResult {
   // only, and the run has another level. The judge sets it from the case. An answer of the port
   // cannot set it, not even with the same reason.
   bool exact_only = false;
+  // False: the port has no such module or profile, so the vector is skipped or unsupported.
+  bool applies = true;
   // The reference has other bits on this machine than the golden, within the tolerances. The
   // golden's values decided.
   bool by_golden = false;

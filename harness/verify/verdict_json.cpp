@@ -170,6 +170,7 @@ nlohmann::json to_json(const VectorResult& result) {
       {"elapsed_s", json_of(result.elapsed_s)},
   };
   if (result.exact_only) out["exact_only"] = true;
+  if (!result.applies) out["applies"] = false;
   if (result.by_golden) out["by_golden"] = true;
   if (result.compared) out["compared"] = name_of(*result.compared);
   if (result.first) out["first"] = deviation_to_json(*result.first);
@@ -212,6 +213,7 @@ Result<VectorResult> vector_result_from_json(const nlohmann::json& json) {
   else
     reader.wrong(fmt::format("there is no verdict `{}`", verdict));
   out.exact_only = reader.has("exact_only") && reader.flag("exact_only");
+  out.applies = !reader.has("applies") || reader.flag("applies");
   out.by_golden = reader.has("by_golden") && reader.flag("by_golden");
   if (reader.has("compared")) {
     const auto level = parse_level(reader.text("compared"));
@@ -220,6 +222,9 @@ Result<VectorResult> vector_result_from_json(const nlohmann::json& json) {
   }
   if (out.exact_only && out.verdict != Verdict::skip) {
     reader.wrong(fmt::format("`exact_only` is of a skip, and the verdict is {}", verdict));
+  }
+  if (!out.applies && is_judged(out.verdict)) {
+    reader.wrong(fmt::format("does not apply to the port, and the verdict is {}", verdict));
   }
   if (const auto rate = LoopRate::parse(reader.text("rate")))
     out.rate = *rate;

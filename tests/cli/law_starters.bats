@@ -18,7 +18,7 @@ in_python="$SOURCE/controller/starters/python_law"
   [ "${BASH_REMATCH[1]}" -ge 174 ]
   [ "$(grep -cE '^ +[0-9]+ (skip|unsupported)' <<<"$output")" -eq 0 ]
   [ "$(grep -A9 ' do not apply to this port:$' <<<"$output" | grep -cE '^      [0-9]+: ')" -eq 3 ]
-  has ": it makes no module attitude_law of profile px4-v1.18"
+  has ": the port makes no module attitude_law of profile px4-v1.18"
   has ": the port does not support profile px4-v1.3.4"
   has ": the port does not support profile px4-v1.5.5"
   [[ ${lines[-1]} =~ \;\ [0-9]+\ do\ not\ apply\ to\ this\ port\ \( ]]
@@ -29,7 +29,7 @@ in_python="$SOURCE/controller/starters/python_law"
     --filter '*/rate_law/d' --port "$in_c"
   [ "$status" -eq 0 ]
   has "1 vector passed, 0 failed; 1 "
-  has "it has no module rate_unit"
+  has "the port has no module rate_unit"
 }
 
 @test "the starter in Python has them to the bit, too" {

@@ -281,12 +281,12 @@ TASKS
   port="lib:$PORTS/port_other_profiles.so"
   run "$ATTEST" run --port "$port" --group rates --group attitude --rate 250
   [ "$status" -eq 0 ]
-  has "it makes no module rate_unit of profile px4-v1.16.0"
+  has "the port makes no module rate_unit of profile px4-v1.16.0"
   lacks "protocol"
   run "$ATTEST" run --port "$port" --filter 'px4-v1.16.0/flight/hover@250-1000hz-iris-ode'
   [ "$status" -eq 0 ]
   run "$ATTEST" smoke --port "$port"
   [ "$status" -eq 0 ]
-  has "it makes no module rate_unit of profile px4-v1.16.0"
+  has "the port makes no module rate_unit of profile px4-v1.16.0"
   lacks "FAIL"
 }

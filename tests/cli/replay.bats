@@ -111,7 +111,7 @@ load common
   has "no trace was compared"
   has "NONE 0 of 1 traces conform, 1 not compared"
   has "unsupported"
-  has "it has no module mixer (extension attest.mixer.v1)"
+  has "the port has no module mixer (extension attest.mixer.v1)"
 }
 
 @test "a malformed trace is shown with file, line and column" {

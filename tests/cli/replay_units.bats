@@ -330,7 +330,7 @@ WILD
   run "$ATTEST" replay "$FLIGHT" --port lib:./wild.so
   [ "$status" -eq 0 ]
   judged pass unsupported
-  has "it has no module rate_unit (extension attest.rate_unit.v1)"
+  has "the port has no module rate_unit (extension attest.rate_unit.v1)"
   wild -DNO_ATTITUDE_UNIT
   run "$ATTEST" replay "$FLIGHT" --port lib:./wild.so
   [ "$status" -eq 0 ]

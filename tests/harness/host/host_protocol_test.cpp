@@ -161,8 +161,8 @@ TEST(HostProtocol, AFaultHasAKindThatTheProcessCanFindAndATickOfTheTrace) {
   const auto fault = [](Kind kind, int tick) {
     return json{{"kind", kind}, {"tick", tick}, {"what", "x"}};
   };
-  for (const Kind kind :
-       {Kind::profile, Kind::unsupported, Kind::failed, Kind::refused, Kind::protocol}) {
+  for (const Kind kind : {Kind::profile, Kind::module, Kind::unsupported, Kind::failed,
+                          Kind::refused, Kind::protocol}) {
     EXPECT_EQ(wrong_fault(fault(kind, 3)), "");
   }
   for (const Kind kind : {Kind::crash, Kind::timeout, Kind::unanswered, Kind(-1), Kind(99)}) {

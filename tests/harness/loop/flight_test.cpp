@@ -118,7 +118,7 @@ TEST(UnitsFor, FlightsOfAPortOfTheLawsAloneAreUnsupported) {
   const auto units =
       units_for(*parse_case(source_folder / "cases/px4-v1.16.0/flight/hover.toml"), port);
   ASSERT_FALSE(units);
-  EXPECT_EQ(units.error().kind, PortFault::Kind::unsupported);
+  EXPECT_EQ(units.error().kind, PortFault::Kind::module);
   EXPECT_THAT(units.error().what, testing::HasSubstr("has no module rate_unit"));
 }
 
