@@ -101,10 +101,7 @@ Result<std::vector<R>> results_of(const Jobs<R>& jobs, int processes, bool is_qu
   workers.processes = processes;
   workers.stop = interrupted;
   workers.on_result = [&](const R&) { progress.add(false, ""); };
-  JobResults<R> outcome = run_jobs(jobs, workers);
-  if (interrupted()) return fail("interrupted");
-  if (!outcome.errors.empty()) return tl::unexpected(outcome.errors.front());
-  return std::move(outcome.results);
+  return all_results(jobs, workers);
 }
 
 Result<void> hunt_faults(const FaultOptions& options, Level level, bool is_quiet,

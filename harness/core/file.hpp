@@ -35,8 +35,11 @@ std::filesystem::path behind_links(std::filesystem::path path);
 // below it, else absolute. Links are resolved.
 std::string path_from_here(const std::filesystem::path& path);
 
-// The files in the folder and in those below it, in the order of their paths. Errors: a folder
-// cannot be read.
+// The path without `.`, `..` and doubled slashes, as far as its text alone shows.
+std::string normal_form(const std::filesystem::path& path);
+
+// The files in the folder and in those below it, in the order of the bytes of their paths. Leaves
+// out pipes, devices and links without a target. Errors: a folder cannot be read.
 Result<std::vector<std::filesystem::path>> files_below(const std::filesystem::path& folder);
 
 // SHA-256 as 64 lower-case hex digits, as `sha256sum` prints it.

@@ -18,30 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Comparing the parts of paths takes longer than reading a folder.
-void sort_by_bytes(std::vector<fs::path>& paths) {
-  std::ranges::sort(
-      paths, {}, [](const fs::path& path) -> const auto& { return path.native(); });
-}
-
 tl::unexpected<Error> unreadable(const fs::path& folder, const std::error_code& why) {
   return fail_at(folder.string(), "cannot be read: " + why.message());
 }
 
 tl::unexpected<Error> missing(const fs::path& folder) {
   return unreadable(folder, std::make_error_code(std::errc::no_such_file_or_directory));
-}
-
-Result<std::vector<fs::path>> files_on_disk(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code failed, ignored;
-  for (fs::recursive_directory_iterator it(folder, failed), end; !failed && it != end;
-       it.increment(failed)) {
-    if (it->is_regular_file(ignored)) files.push_back(it->path());
-  }
-  if (failed) return unreadable(folder, failed);
-  sort_by_bytes(files);
-  return files;
 }
 
 Result<std::vector<fs::path>> folders_on_disk(const fs::path& folder) {
@@ -51,7 +33,7 @@ Result<std::vector<fs::path>> folders_on_disk(const fs::path& folder) {
     if (it->is_directory(ignored)) folders.push_back(it->path());
   }
   if (failed) return unreadable(folder, failed);
-  sort_by_bytes(folders);
+  std::ranges::sort(folders);
   return folders;
 }
 
@@ -100,9 +82,7 @@ Result<std::optional<Place>> place_of(const fs::path& path) {
   const auto& [root, archive] = *found;
   if (!archive) return tl::unexpected(archive.error());
   std::string name = text.substr(std::min(root.size() + 1, text.size()));
-  const bool is_normal = !name.starts_with('.') && name.find("/.") == std::string::npos &&
-                         name.find("//") == std::string::npos;
-  if (!is_normal) name = fs::path(name).lexically_normal().native();
+  name = normal_form(name);
   if (name.ends_with('/')) name.pop_back();
   if (name == ".") name.clear();
   return Place{std::move(name), *archive};
@@ -132,7 +112,7 @@ Result<std::string> read_suite_file(const fs::path& file) {
 Result<std::vector<fs::path>> suite_files_below(const fs::path& folder) {
   const auto place = place_of(folder);
   if (!place) return tl::unexpected(place.error());
-  if (!*place) return files_on_disk(folder);
+  if (!*place) return files_below(folder);
   std::vector<fs::path> files;
   for (const std::string& name : (*place)->names_below()) {
     files.push_back(folder / name.substr((*place)->prefix()));

@@ -197,9 +197,7 @@ class Choice {
       jobs.push_back(std::make_unique<CandidateJob>(one->the_case, std::move(configurations),
                                                     std::move(vehicle_model), faults, goldens_));
     }
-    JobResults<Candidate> found = run_jobs(jobs, workers_);
-    if (!found.errors.empty()) return tl::unexpected(found.errors.front());
-    return std::move(found.results);
+    return all_results(jobs, workers_);
   }
 
   const Goldens& goldens_;

@@ -48,10 +48,7 @@ Result<std::vector<R>> results_of(const Jobs<R>& jobs, const HuntWorkers& worker
   options.processes = workers.processes;
   options.in_process = host.in_process;
   options.stop = workers.stop;
-  JobResults<R> outcome = run_jobs(jobs, options);
-  if (workers.stop()) return fail("interrupted");
-  if (!outcome.errors.empty()) return tl::unexpected(outcome.errors.front());
-  return std::move(outcome.results);
+  return all_results(jobs, options);
 }
 
 template <>

@@ -25,11 +25,8 @@ namespace {
 
 std::vector<std::string> files_of_folder(const std::string& folder) {
   std::vector<std::string> files;
-  const auto found = files_below(folder);
-  if (!found) return files;
-  for (const std::filesystem::path& file : *found) {
-    std::error_code ignored;
-    if (std::filesystem::is_regular_file(file, ignored)) files.push_back(file.string());
+  for (const auto& file : files_below(folder).value_or(std::vector<std::filesystem::path>())) {
+    files.push_back(file.string());
   }
   return files;
 }

@@ -170,4 +170,14 @@ JobResults<R> run_jobs(const Jobs<R>& jobs, const JobOptions<R>& options) {
   return collector.finish(run_in_workers(work, pool));
 }
 
+// The results of jobs that are of no use if one of them fails. Errors: the first error of the jobs;
+// options.stop().
+template <typename R>
+Result<std::vector<R>> all_results(const Jobs<R>& jobs, const JobOptions<R>& options) {
+  JobResults<R> outcome = run_jobs(jobs, options);
+  if (options.stop()) return attest::fail("interrupted");
+  if (!outcome.errors.empty()) return tl::unexpected(outcome.errors.front());
+  return std::move(outcome.results);
+}
+
 }  // namespace attest

@@ -9,7 +9,7 @@
 #include "harness/core/json_text.hpp"
 #include "harness/report/conclusion.hpp"
 #include "harness/report/failure_text.hpp"
-#include "harness/report/hunt_values.hpp"
+#include "harness/report/finding_values.hpp"
 #include "harness/report/text.hpp"
 #include "harness/verify/verdict_json.hpp"
 

@@ -1,4 +1,4 @@
-#include "harness/report/hunt_values.hpp"
+#include "harness/report/finding_values.hpp"
 
 #include <algorithm>
 #include <cstdint>
