@@ -153,7 +153,7 @@ sha256_of_profile() {
   has "px4-v1.3.4/attitude/roll: new"
   has "px4-v1.3.4/attitude/roll: removed, because its case is gone"
   has "blessed 2"
-  ! grep -q px4-v1.3.4 $golden
+  must_fail grep -q px4-v1.3.4 $golden
   run "$ATTEST" --suite suite run --level exact
   [ "$status" -eq 0 ]
   has "22 vectors passed, 0 failed"
@@ -188,7 +188,7 @@ sha256_of_profile() {
   [ "$status" -eq 0 ]
   has "px4-v1.5.5/attitude/gone: removed, because its case is gone"
   [ "$(ls suite/golden/px4-v1.5.5/attitude)" = roll.csv ]
-  ! grep -q gone $provenance
+  must_fail grep -q gone $provenance
   run "$ATTEST" --suite suite run --level exact
   [ "$status" -eq 0 ]
 }
@@ -277,7 +277,7 @@ nothing_half_done() {
   kill -KILL $!
   wait $! || true
   [ -n "$(find suite/golden -name '*.new')" ]
-  ! grep -q "second" $provenance
+  must_fail grep -q "second" $provenance
   run "$ATTEST" --suite suite bless --yes --reason "third"
   [ "$status" -eq 0 ]
   has "blessed 7"

@@ -35,7 +35,7 @@ value() { python3 -c "import json; r = json.load(open('report.json')); print($1)
   [ "$(value '[c["profile"] for c in r["claims"]]')" = "['px4-v1.3.4', 'px4-v1.5.5']" ]
   grep -q 'name="conformance" value="partial: ' junit.xml
   grep -q "numeric, partial" badge.svg
-  ! grep -q "#3a7d34" badge.svg
+  must_fail grep -q "#3a7d34" badge.svg
 }
 
 # hash_of_program SHARD: of the port in the report of that half of a run of ./port.py.

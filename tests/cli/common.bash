@@ -41,6 +41,14 @@ has() {
   }
 }
 
+# must_fail COMMAND...: it has to fail. `set -e` ignores the status of `! COMMAND`.
+must_fail() {
+  if "$@"; then
+    echo "expected to fail: $*"
+    return 1
+  fi
+}
+
 lacks() {
   [[ $output != *"$1"* ]] || {
     echo "not expected: $1"

@@ -135,7 +135,7 @@ CHECK
   [ "$status" -eq 0 ]
   lacks "deviate"
   [ "${lines[-1]}" = "$pass; the outputs agree with the reference's for the same inputs" ]
-  ! grep -q 'first deviation' page.html
+  must_fail grep -q 'first deviation' page.html
 }
 
 @test "sim: a lost vehicle, a case that is no flight, a vehicle or plant there is not" {

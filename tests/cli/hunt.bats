@@ -76,7 +76,7 @@ load common
     cmp one.$seed two.$seed
     cmp text.one text.two
   done
-  ! cmp -s one.1 one.2
+  must_fail cmp -s one.1 one.2
 }
 
 @test "a case of a hunt overwrites no file, and is in no released suite" {

@@ -112,7 +112,7 @@ P
   [ "$status" -eq 0 ]
   has "custom suite, reference sign-flip"
   grep -q "^,,11," ours/golden/px4-v1.5.5/rates/p_alone.csv # the case of ours has 12 ticks
-  ! grep -q "^,,12," ours/golden/px4-v1.5.5/rates/p_alone.csv
+  must_fail grep -q "^,,12," ours/golden/px4-v1.5.5/rates/p_alone.csv
   [ -e ours/golden/px4-v1.5.5/rates/long_run.csv ] # a case of the base
   run ours run "${selection[@]}" --json ours/cases/px4-v1.5.5/rates/p_alone.toml
   [ "$status" -eq 2 ]

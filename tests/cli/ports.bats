@@ -254,7 +254,7 @@ TASKS
     --json reference.json
   [ "$(grep -c '"id"' report.json)" -eq "$(grep -c '"id"' reference.json)" ]
   # The process would sleep for 60 s, so it was killed. Its command line would name the port.
-  ! grep -qa "port_fork[s].so" /proc/[0-9]*/cmdline 2>/dev/null
+  must_fail grep -qa "port_fork[s].so" /proc/[0-9]*/cmdline 2>/dev/null
 }
 
 @test "a port that stops listening is not said to be killed" {
