@@ -2,6 +2,7 @@
 // samples, so some of its outputs were computed from samples that it does not have.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -23,6 +24,11 @@ struct LogLimits {
   // the value between two logged samples is larger than at both. The others were barely beyond the
   // tolerance.
   double most_unexplained = 0.02;
+
+  // How many must be within. Neighbours explain no deviation of a single step.
+  double least_part(bool single_steps) const {
+    return single_steps ? std::max(least_part_within, 1 - most_unexplained) : least_part_within;
+  }
 };
 
 struct LoggedPair {

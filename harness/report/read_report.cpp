@@ -227,7 +227,7 @@ void read_not_run(JsonReader& reader, std::string& error, RunResult& run) {
 }
 
 // Errors: the totals are not those of the results, or the number of results contradicts the number
-// of selected vectors.
+// of selected vectors, or of those that were not run.
 void check_numbers(JsonReader reader, JsonReader totals, const RunResult& run) {
   for (int i = 0; i < verdict_count; ++i) {
     const auto verdict = static_cast<Verdict>(i);
@@ -242,6 +242,15 @@ void check_numbers(JsonReader reader, JsonReader totals, const RunResult& run) {
   if (results > run.selected || (results < run.selected && !may_lack_results)) {
     reader.wrong(fmt::format("contradicts itself: {} vectors were selected, but it has {} results",
                              run.selected, results));
+  }
+  std::size_t not_run = 0;
+  for (const NotRun& left : run.not_run) not_run += left.vectors;
+  const bool has_too_many = not_run > 0 && (!run.stopped_early || results + not_run > run.selected);
+  if (has_too_many) {
+    reader.wrong(
+        fmt::format("contradicts itself: it has {} results of {} vectors, and {} were not "
+                    "run",
+                    results, run.selected, not_run));
   }
 }
 

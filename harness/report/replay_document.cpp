@@ -98,14 +98,11 @@ void add_deviations(const TopicAgreement& topic, const LogLimits& limits, const 
   }
 }
 
-// The bars that decided. Neighbours explain no deviation of a single step.
+// The bars that decided.
 std::string bars_of(const LogResult& result, const LogLimits& limits) {
-  const double least = result.single_steps
-                           ? std::max(limits.least_part_within, 1 - limits.most_unexplained)
-                           : limits.least_part_within;
-  std::string out =
-      fmt::format("  passes if at least {:g}% of the {} are within {:g} of the log", 100 * least,
-                  result.single_steps ? "single steps" : "samples", limits.within);
+  std::string out = fmt::format("  passes if at least {:g}% of the {} are within {:g} of the log",
+                                100 * limits.least_part(result.single_steps.has_value()),
+                                result.single_steps ? "single steps" : "samples", limits.within);
   if (result.single_steps) return out;
   return out + fmt::format(", and at most {:g}% differ without an explanation",
                            100 * limits.most_unexplained);

@@ -175,6 +175,10 @@ refused() {
   refused "has a tolerance of -1"
   edited 'result["first"]["tolerance"] = "nan"'
   refused "has a tolerance of nan"
+  edited 'result["applies"] = False'
+  refused "does not apply to the port, and the verdict is fail"
+  edited 'report["not_run"] = [dict(profile="px4-v1.5.5", group="tpa", rate="250", vectors=3)]'
+  refused "and 3 were not run"
   edited 'result["rate"] = "333"; result["id"] = result["id"].replace("@250hz", "@333hz")'
   refused '@333hz is at 333 Hz, which `rates` does not have'
   edited 'result.update(name=other["name"])'

@@ -66,7 +66,7 @@ TEST(Summary, ARunThatWasStoppedIsNoPass) {
   run.stopped_early = true;
   run.selected = 9;
   const VectorResult& one = run.results.front();
-  run.not_run = {{one.profile, one.group, one.rate, 3}};
+  run.not_run = {{one.profile, one.group, one.rate, 2}, {one.profile, "mixer", one.rate, 1}};
   const std::string text = summary(run);
   EXPECT_THAT(text, HasSubstr("\nSTOPPED 6 vectors passed, 0 failed (px4-v1.5.5, exact, 2 rates)"));
   EXPECT_THAT(text, EndsWith("; stopped early, 3 of 9 vectors not run\n"));
@@ -74,7 +74,9 @@ TEST(Summary, ARunThatWasStoppedIsNoPass) {
   EXPECT_THAT(text, HasSubstr("*: stopped before all were run"));
   EXPECT_THAT(badge(run), HasSubstr(">stopped<"));
   EXPECT_THAT(badge(run), Not(HasSubstr("#3a7d34")));
-  EXPECT_THAT(junit_report(run), HasSubstr("3 vectors not run: the run was stopped"));
+  // Also a group of which no vector was run.
+  EXPECT_THAT(junit_report(run), HasSubstr("2 vectors not run: the run was stopped"));
+  EXPECT_THAT(junit_report(run), HasSubstr("testsuite name=\"px4-v1.5.5.mixer\""));
   EXPECT_THAT(json_report(run), HasSubstr("\"not_run\""));
   run.results.front().verdict = Verdict::fail;
   EXPECT_THAT(summary(run), HasSubstr("\nFAIL 1 of 6 vectors failed, 5 passed"));
