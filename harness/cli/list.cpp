@@ -8,6 +8,7 @@
 #include <string_view>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -22,6 +23,7 @@
 #include "harness/plant/vehicle.hpp"
 #include "harness/port/features.hpp"
 #include "harness/port/profiles.hpp"
+#include "harness/report/text.hpp"
 #include "harness/trace/channels.hpp"
 
 namespace attest::cli {
@@ -217,8 +219,8 @@ Result<void> extract(const ListOptions& options, const Globals& globals, const S
     return copy_suite_files(suite.root, folder);
   });
   if (made && !globals.quiet) {
-    fmt::print("{0} has the files of {1}. To use them: attest --suite {0} ...\n", options.extract,
-               suite.root.string());
+    fmt::print("{} has the files of {}. To use them: attest --suite {} ...\n", options.extract,
+               suite.root.string(), shell_word(options.extract));
   }
   return made;
 }
@@ -264,21 +266,24 @@ void add_list(const CommandLine& line) {
   auto options = std::make_shared<ListOptions>();
   const Command command = line.add("list", "List the cases with their reasons, or another table");
   add_selection(command, options->select);
-  command.flag("--groups", options->groups,
-               "List the groups with their numbers of cases and vectors");
-  command.flag("--parameters", options->parameters, "List the parameters of the law");
-  command.flag("--channels", options->channels,
-               "List the signals (columns of traces) with type, unit and module");
-  command.flag("--features", options->features,
-               "List the features of the law that a port can declare to lack, and how many of the "
-               "selected open-loop cases use each");
-  command.flag("--flight-modes", options->modes,
-               "List the flight modes and the flags that they set");
-  command.flag("--vehicles", options->vehicles, "List the vehicles with their main data");
-  command
-      .option("--extract", options->extract,
-              "Copy the files of the suite from its archive to this new folder")
-      .type("DIR");
+  const std::vector<Option> tables = {
+      command.flag("--groups", options->groups,
+                   "List the groups with their numbers of cases and vectors"),
+      command.flag("--parameters", options->parameters, "List the parameters of the law"),
+      command.flag("--channels", options->channels,
+                   "List the signals (columns of traces) with type, unit and module"),
+      command.flag("--features", options->features,
+                   "List the features of the law that a port can declare to lack, and how many of "
+                   "the selected open-loop cases use each"),
+      command.flag("--flight-modes", options->modes,
+                   "List the flight modes and the flags that they set"),
+      command.flag("--vehicles", options->vehicles, "List the vehicles with their main data")};
+  const Option extract =
+      command
+          .option("--extract", options->extract,
+                  "Copy the files of the suite from its archive to this new folder")
+          .type("DIR");
+  for (const Option& table : tables) extract.excludes(table);
   command.examples(
       {{"attest list --filter 'tpa/*'", "list the cases of a group with their reasons"},
        {"attest list --parameters --profile px4-v1.3.4",

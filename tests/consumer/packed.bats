@@ -1,21 +1,10 @@
 # The installed suite, which is one archive. Set by CTest: INSTALLED (the installed attest), SOURCE
 # (the tree), PORTS (test ports), PACK (the program that makes the archive), PYTHON.
 
-setup() {
-  cd "$BATS_TEST_TMPDIR"
-  unset NO_COLOR ATTEST_SUITE
-  export SOURCE_DATE_EPOCH=1774915200 XDG_STATE_HOME=$BATS_TEST_TMPDIR/state
-  attest=$INSTALLED/bin/attest
-  suite=$INSTALLED/share/attest/suite.zip
-}
+load ../cli/common
 
-has() {
-  [[ $output == *"$1"* ]] || {
-    echo "expected: $1"
-    echo "output:   $output"
-    return 1
-  }
-}
+attest=$INSTALLED/bin/attest
+suite=$INSTALLED/share/attest/suite.zip
 
 # same STATUS COMMAND...: exits with it, and has the same output, with the archive and with the
 # folder of the source tree.
@@ -80,6 +69,9 @@ same() {
   run "$attest" list --extract files
   [ "$status" -eq 2 ]
   has "files: is in a suite"
+  run "$attest" list --extract more --parameters
+  [ "$status" -eq 2 ]
+  [ ! -e more ]
   run "$attest" --suite files list --extract other
   [ "$status" -eq 2 ]
   has "files: is a folder already"
