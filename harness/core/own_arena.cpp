@@ -30,10 +30,11 @@ struct Pages {
   std::size_t size = 0;
 };
 
-// The heap as /proc/self/maps has it. Allocates no memory, because that could change the heap.
-Pages pages_of_heap() {
+// The begin of the heap as /proc/self/maps has it. Allocates no memory, because that could change
+// the heap.
+char* begin_of_heap() {
   const int maps = ::open("/proc/self/maps", O_RDONLY | O_CLOEXEC);
-  if (maps < 0) return {};
+  if (maps < 0) return nullptr;
   std::array<char, 4096> text{};  // the heap is among the first lines, after those of the program
   std::size_t size = 0;
   for (ssize_t got = 1; got > 0 && size + 1 < text.size(); size += static_cast<std::size_t>(got)) {
@@ -43,8 +44,16 @@ Pages pages_of_heap() {
   const char* line = std::strstr(text.data(), "[heap]");
   while (line != nullptr && line > text.data() && line[-1] != '\n') --line;
   unsigned long begin = 0, end = 0;
-  if (line == nullptr || std::sscanf(line, "%lx-%lx rw-p", &begin, &end) != 2) return {};
-  return {reinterpret_cast<char*>(begin), end - begin};
+  if (line == nullptr || std::sscanf(line, "%lx-%lx rw-p", &begin, &end) != 2) return nullptr;
+  return reinterpret_cast<char*>(begin);
+}
+
+// Also when make_heap_cheap_to_fork() was called before: the system then no longer calls the pages
+// of that time a heap.
+Pages pages_of_heap() {
+  static char* const begin = begin_of_heap();
+  if (begin == nullptr) return {};
+  return {begin, static_cast<std::size_t>(static_cast<char*>(::sbrk(0)) - begin)};
 }
 
 // A file in memory with these bytes, which cannot be changed any more. -1: no memory.
