@@ -188,11 +188,12 @@ void read_attitude_unit(const Arrived& arrived, const FlightPlan& plan, JsonRead
 
 }  // namespace
 
-std::string drive_request(const ModuleUnderTest& subject, const Trace& trace) {
+std::string drive_request(const ModuleUnderTest& subject, std::size_t ticks,
+                          const std::vector<ParameterChange>& changes) {
   return text_of({{"do", "drive"},
                   {"subject", to_json(subject)},
-                  {"ticks", trace.samples.size()},
-                  {"parameters", changes_json(trace.parameters)}});
+                  {"ticks", ticks},
+                  {"parameters", changes_json(changes)}});
 }
 
 std::string fly_request(const FlightPlan& plan) {

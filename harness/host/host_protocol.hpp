@@ -46,7 +46,8 @@
 namespace attest {
 
 // Of the judge: the heads of its requests.
-std::string drive_request(const ModuleUnderTest& subject, const Trace& trace);
+std::string drive_request(const ModuleUnderTest& subject, std::size_t ticks,
+                          const std::vector<ParameterChange>& changes);
 std::string fly_request(const FlightPlan& plan);
 std::string time_request(const ModuleUnderTest& subject, const Trace& inputs, bool with_stack);
 std::string supports_request(const std::string& profile);

@@ -1,7 +1,10 @@
 #include "harness/host/port_process.hpp"
 
+#include <algorithm>
+#include <span>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -11,6 +14,7 @@
 #include "harness/host/in_process_host.hpp"
 #include "harness/host/port_launcher.hpp"
 #include "harness/host/recorded_host.hpp"
+#include "harness/trace/trace_parts.hpp"
 
 namespace attest {
 namespace {
@@ -18,11 +22,9 @@ namespace {
 using Kind = Received::Kind;
 using Clock = std::chrono::steady_clock;
 
-// A flight that diverges does so before this time.
-Nanoseconds duration_of(const Case& the_case, const FlightPlan& plan) {
-  const Rate& rate = plan.configuration.rate.motor_unit;
-  return the_case.duration.on(rate) + rate.tick(1);  // from_one_period_on: one more
-}
+// A request has at most so many ticks: new memory costs the port's process, which is new for a few
+// vectors, more than its steps do.
+constexpr std::size_t ticks_of_part = 2048;
 
 // The fault of a request to a port that had `kind` before.
 std::string not_run(PortFault::Kind kind) {
@@ -62,27 +64,29 @@ class PortProcess final : public PortHost {
   const Declarations& declarations() const override { return declarations_; }
 
   std::optional<PortFault> drive(const ModuleUnderTest& subject, Trace& trace) override {
-    const ModuleInfo& module = info_of(subject.module);
-    const std::vector<std::byte> inputs = module.all_inputs().copy(trace.samples);
-    const auto driven =
-        ask(drive_request(subject, trace), {blob_of(inputs)}, [&](const Arrived& arrived) {
-          return read_driven(arrived, subject, trace.samples.size());
-        });
-    if (!driven) return fault_;
-    module.out.paste(driven->outputs, trace.samples);
-    return judged(driven->fault, subject.profile);
+    const std::span<Sample> samples = trace.samples;
+    const std::size_t most = subject.instances == Instances::one ? ticks_of_part : samples.size();
+    std::optional<PortFault> fault;
+    std::size_t first = 0;
+    do {
+      const auto part = samples.subspan(first, std::min(most, samples.size() - first));
+      ModuleUnderTest of_part = subject;
+      of_part.part.first_tick += first;
+      of_part.part.is_last = subject.part.is_last && first + part.size() == samples.size();
+      fault = drive_part(of_part, part, changes_in(trace.parameters, first, part.size()));
+      first += part.size();
+    } while (!fault && first < samples.size());
+    return fault;
   }
 
   Result<Flown> fly(const FlightPlan& plan) override {
     const std::vector<Blob> times{blob_of(plan.timing.unit), blob_of(plan.timing.attitude_unit)};
-    auto flown = ask(fly_request(plan), times, [&](const Arrived& arrived) {
-      return read_flown(arrived, plan, duration_of(*course_.the_case, plan));
-    });
-    if (!flown) {
-      Flown none;
-      none.fault = fault_;
-      return none;
-    }
+    const Rate& rate = plan.configuration.rate.motor_unit;
+    // A flight that diverges does so before this time.
+    const Nanoseconds longest = course_.the_case->duration.on(rate) + rate.tick(1);
+    auto flown = ask(fly_request(plan), times,
+                     [&](const Arrived& arrived) { return read_flown(arrived, plan, longest); });
+    if (!flown) return without_answer<Flown>();
     if (!*flown) return *std::move(flown);
     (*flown)->fault = judged((*flown)->fault, course_.the_case->profile);
     (*flown)->trace.source = course_.the_case->id_at(plan.configuration);
@@ -111,11 +115,7 @@ class PortProcess final : public PortHost {
       return read_live(arrived, {the_case, plan, longest, is_stopping});
     };
     auto flown = ask(live_request(plan), {}, read, the_case.duration.on(rate.motor_unit), look);
-    if (!flown) {
-      LiveFlight none;
-      none.fault = fault_;
-      return none;
-    }
+    if (!flown) return without_answer<LiveFlight>();
     if (!*flown) return *std::move(flown);
     LiveFlight& flight = **flown;
     flight.fault = judged(flight.fault, the_case.profile);
@@ -133,13 +133,9 @@ class PortProcess final : public PortHost {
         time_request(subject, inputs, with_stack), {blob_of(sent)}, [&](const Arrived& arrived) {
           return read_times(arrived, inputs.samples.size(), declarations_.cost.has_value());
         });
-    if (times) {
-      if (*times) (*times)->fault = judged((*times)->fault, subject.profile);
-      return *std::move(times);
-    }
-    StepTimes none;
-    none.fault = fault_;
-    return none;
+    if (!times) return without_answer<StepTimes>();
+    if (*times) (*times)->fault = judged((*times)->fault, subject.profile);
+    return *std::move(times);
   }
 
   std::optional<Nanoseconds> cpu_time() const override {
@@ -158,6 +154,25 @@ class PortProcess final : public PortHost {
   std::string last_words() const { return port_ ? port_->child.last_words() : ""; }
 
  private:
+  std::optional<PortFault> drive_part(const ModuleUnderTest& subject, std::span<Sample> samples,
+                                      const std::vector<ParameterChange>& changes) {
+    const ModuleInfo& module = info_of(subject.module);
+    const std::vector<std::byte> inputs = module.all_inputs().copy(samples);
+    const auto driven =
+        ask(drive_request(subject, samples.size(), changes), {blob_of(inputs)},
+            [&](const Arrived& arrived) { return read_driven(arrived, subject, samples.size()); });
+    if (!driven) return fault_;
+    module.out.paste(driven->outputs, samples);
+    return judged(driven->fault, subject.profile);
+  }
+
+  template <typename R>
+  R without_answer() const {
+    R result;
+    result.fault = fault_;
+    return result;
+  }
+
   // An error after a fault of the port, in this request or before; fault_ has it. `duration`: of a
   // live flight. `look` is called while the answer is awaited.
   template <typename Read>
@@ -225,28 +240,22 @@ class PortProcess final : public PortHost {
     const std::string how = port_->child.end();
     const std::string where = when.empty() ? port_->calls->current() : ", " + when;
     const std::string words = port_->child.last_printed();
+    const auto set_fault = [&](PortFault::Kind kind, const std::string& what) {
+      fault_ = PortFault{kind, 0, what};
+    };
     if (exceeded_ == AnswerMeter::Limit::memory) {
-      fault_ = PortFault{PortFault::Kind::crash, 0,
-                         fmt::format("the port's processes used more than {} GiB of memory{}{}",
-                                     max_memory_gib, where, words)};
-      return;
-    }
-    switch (why) {
-      case Kind::ended:
-        fault_ = PortFault{PortFault::Kind::crash, 0,
-                           fmt::format("the port's process {}{}{}", how, where, words)};
-        return;
-      case Kind::too_late:
-      case Kind::given_up:
-        fault_ = PortFault{PortFault::Kind::timeout, 0,
-                           fmt::format("no answer within {}{}{}",
-                                       text_of(exceeded_, options_.timeout_s), where, words)};
-        return;
-      default:
-        fault_ =
-            PortFault{PortFault::Kind::protocol, 0,
-                      fmt::format("the port wrote on the socket on which its process answers{}{}",
-                                  wrong.empty() ? "" : ": ", wrong)};
+      set_fault(PortFault::Kind::crash,
+                fmt::format("the port's processes used more than {} GiB of memory{}{}",
+                            max_memory_gib, where, words));
+    } else if (why == Kind::ended) {
+      set_fault(PortFault::Kind::crash, "the port's process " + how + where + words);
+    } else if (why == Kind::too_late || why == Kind::given_up) {
+      const std::string limit = text_of(exceeded_, options_.timeout_s);
+      set_fault(PortFault::Kind::timeout, "no answer within " + limit + where + words);
+    } else {
+      set_fault(PortFault::Kind::protocol,
+                fmt::format("the port wrote on the socket on which its process answers{}{}",
+                            wrong.empty() ? "" : ": ", wrong));
     }
   }
 
@@ -272,29 +281,6 @@ Result<std::unique_ptr<PortProcess>> start_process(const HostOptions& options,
   if (auto greeted = host->greet(); !greeted) return tl::unexpected(greeted.error());
   return host;
 }
-
-}  // namespace
-
-Result<std::unique_ptr<PortHost>> start_host(const HostOptions& options, const Course& course) {
-  if (options.start) return options.start(options, course);
-  if (!kind_of(options.port).is_callable()) return open_recorded_host(argument_of(options.port));
-  if (options.in_process) {
-    return open_in_process_host(options.port, options.said, course, nullptr, options.files.get());
-  }
-  auto process = start_process(options, course);
-  if (!process) return tl::unexpected(process.error());
-  return *std::move(process);
-}
-
-Result<void> ensure_host(std::unique_ptr<PortHost>& host, const HostOptions& options) {
-  if (host && !host->is_spent()) return {};
-  auto started = start_host(options);
-  if (!started) return tl::unexpected(started.error());
-  host = *std::move(started);
-  return {};
-}
-
-namespace {
 
 Result<PortDescription> describe_callable(const HostOptions& options,
                                           const std::vector<std::string>& profiles) {
@@ -330,6 +316,20 @@ Result<PortDescription> describe_callable(const HostOptions& options,
 }
 
 }  // namespace
+
+Result<std::unique_ptr<PortHost>> start_host(const HostOptions& options, const Course& course) {
+  if (options.start) return options.start(options, course);
+  if (!kind_of(options.port).is_callable()) return open_recorded_host(argument_of(options.port));
+  if (options.in_process) {
+    return open_in_process_host(options.port, options.said, course, nullptr, options.files.get());
+  }
+  return start_process(options, course);
+}
+
+Result<void> ensure_host(std::unique_ptr<PortHost>& host, const HostOptions& options) {
+  if (host && !host->is_spent()) return {};
+  return start_host(options).map([&](auto started) { host = std::move(started); });
+}
 
 Result<PortDescription> describe_port(const HostOptions& options,
                                       const std::vector<std::string>& profiles) {
