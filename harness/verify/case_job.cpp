@@ -140,9 +140,11 @@ namespace {
 
 using CasesOfJob = std::vector<SelectedCase>;
 
-// One launch of a process for four vectors instead of four (`ci/bench`, "suite at 250 Hz"). A
-// program may need seconds to start, so its process serves more of them.
-constexpr std::size_t enough_vectors = 4, enough_of_program = 48;
+// A launch of a process costs more than the steps of a vector of one rate (`ci/bench`, "suite at
+// 250 Hz"), and a program may need seconds to start.
+constexpr std::size_t most_vectors = 48;
+// A case with many rates has a process of its own, so that most cases meet a first instance.
+constexpr std::size_t many_rates = 4;
 
 const std::optional<PlantConfiguration>& plant_of(const SelectedCase& selected) {
   return selected.configurations.front().plant_configuration;
@@ -164,22 +166,18 @@ std::vector<SelectedCase> split_by_plant(const std::vector<SelectedCase>& cases)
   return parts;
 }
 
-bool has_room_for(const SelectedCase& next, const CasesOfJob& job, bool is_program) {
+bool has_room_for(const SelectedCase& next, const CasesOfJob& job) {
   if (plant_of(next) || plant_of(job.front())) return false;
-  const Case &first = job.front().the_case, &one = next.the_case;
+  if (next.configurations.size() >= many_rates) return false;
   std::size_t vectors = 0;
   for (const SelectedCase& selected : job) vectors += selected.configurations.size();
-  // A case with all its rates has a process of its own, so that each case meets a first instance.
-  if (is_program && next.configurations.size() < enough_vectors) {
-    return vectors < enough_of_program && one.profile == first.profile;
-  }
-  return vectors < enough_vectors && one.profile == first.profile && one.group == first.group;
+  return vectors < most_vectors && next.the_case.profile == job.front().the_case.profile;
 }
 
-std::vector<CasesOfJob> cases_of_jobs(const std::vector<SelectedCase>& cases, bool is_program) {
+std::vector<CasesOfJob> cases_of_jobs(const std::vector<SelectedCase>& cases) {
   std::vector<CasesOfJob> jobs;
   for (SelectedCase& next : split_by_plant(cases)) {
-    if (jobs.empty() || !has_room_for(next, jobs.back(), is_program)) jobs.emplace_back();
+    if (jobs.empty() || !has_room_for(next, jobs.back())) jobs.emplace_back();
     jobs.back().push_back(std::move(next));
   }
   return jobs;
@@ -194,7 +192,7 @@ Result<Jobs<VectorResult>> case_jobs(const std::vector<SelectedCase>& cases,
   Jobs<VectorResult> jobs;
   // Read here, so that the workers have them.
   for (const SelectedCase& selected : cases) goldens->origins_of(selected.the_case.profile);
-  for (const CasesOfJob& of_job : cases_of_jobs(cases, kind_of(options.port).is_program)) {
+  for (const CasesOfJob& of_job : cases_of_jobs(cases)) {
     std::shared_ptr<const VehicleModel> vehicle_model;
     if (const auto& plant = plant_of(of_job.front())) {
       auto loaded = vehicle_models.get(plant->vehicle);
