@@ -119,7 +119,9 @@ class SingleStepJudge {
         limits_(limits),
         parameters_(parameters),
         most_ticks_(most_ticks),
-        compared_(compared_outputs(steps, subject.profile)) {}
+        compared_(compared_outputs(steps, subject.profile)) {
+    for (const std::size_t i : outputs_by_stage(compared_)) outputs_.push_back(&channels()[i]);
+  }
 
   // Finds out which steps are compared, with the reference alone.
   Result<void> find_steps() {
@@ -240,12 +242,9 @@ class SingleStepJudge {
   }
 
   bool agree(const Sample& got, const Sample& want) const {
-    for (std::size_t i = 0; i < channels().size(); ++i) {
-      if (!compared_[i] || !channels()[i].is_output()) continue;
-      const double off = distance(value_of(channels()[i], got), value_of(channels()[i], want));
-      if (!(off <= limits_.within)) return false;
-    }
-    return true;
+    return std::ranges::all_of(outputs_, [&](const Channel* output) {
+      return distance(value_of(*output, got), value_of(*output, want)) <= limits_.within;
+    });
   }
 
   std::string why_not(const StepKind& kind, const TopicAgreement& of_port,
@@ -293,8 +292,9 @@ class SingleStepJudge {
   const LogParameters& parameters_;
   std::size_t most_ticks_;
   ChannelSet compared_;
-  std::uint64_t oldest_us_ = any_age;  // setpoints that were given are younger
-  bool has_reference_ = false;         // false: attest does not have the law
+  std::vector<const Channel*> outputs_;  // of these
+  std::uint64_t oldest_us_ = any_age;    // setpoints that were given are younger
+  bool has_reference_ = false;           // false: attest does not have the law
   std::vector<StepKind> kinds_;
 };
 
