@@ -25,14 +25,20 @@ namespace {
 
 struct DoctorOptions {
   HostOptions host;
+  bool verbose = false;
 };
 
 void examine_arithmetic(Examination& examination) {
   // volatile: this machine must compute the product now, not the compiler.
   volatile float tiny = std::numeric_limits<float>::denorm_min();
   volatile float product = tiny * 1.0f;
-  examination.check(product != 0 && std::fegetround() == FE_TONEAREST, "arithmetic",
-                    "binary32, round to nearest, denormals kept");
+  if (product != 0 && std::fegetround() == FE_TONEAREST) {
+    return examination.good("arithmetic", "binary32, round to nearest, denormals kept");
+  }
+  examination.bad("arithmetic",
+                  "denormals become 0, or numbers are not rounded to nearest, so no verdict is "
+                  "valid. A library that attest loads has changed the floating-point mode: unset "
+                  "LD_PRELOAD, and build attest without -ffast-math");
 }
 
 // Of this build, because a compiler may have made other code of them than that which was tested.
@@ -83,18 +89,22 @@ void examine_cases(const SuiteFolder& suite, Examination& examination) {
 }
 
 // A group without a recording is not an error, but limits the weight of its verdicts.
-void examine_coverage(const SuiteFolder& suite, Examination& examination) {
+void examine_coverage(const SuiteFolder& suite, bool verbose, Examination& examination) {
   const auto covered = covered_groups(suite.recorded());
   if (!covered) return examination.bad("recordings", covered.error().to_string());
+  const std::vector<std::string> groups = suite.groups();
   std::vector<std::string> uncovered;
-  for (const std::string& group : suite.groups()) {
+  for (const std::string& group : groups) {
     if (!covered->contains(group)) uncovered.push_back(group);
   }
-  examination.good("recordings", uncovered.empty()
-                                     ? std::string("cover every group")
-                                     : fmt::format("no recording covers {}; the goldens there "
-                                                   "rely on the description of the law",
-                                                   fmt::join(uncovered, ", ")));
+  const std::string which = fmt::format(" ({})", fmt::join(uncovered, ", "));
+  examination.good(
+      "recordings",
+      uncovered.empty()
+          ? std::string("cover every group")
+          : fmt::format("cover {} of {} groups of cases; the goldens of the others{} rely on the "
+                        "description of the law",
+                        groups.size() - uncovered.size(), groups.size(), verbose ? which : ""));
 }
 
 void examine_reference(const SuiteFolder& suite, Examination& examination) {
@@ -103,7 +113,11 @@ void examine_reference(const SuiteFolder& suite, Examination& examination) {
   const std::string finding = fmt::format("agrees with {} of {} traces recorded from the firmware",
                                           check->conforming, check->traces);
   if (check->conforming == check->traces) return examination.good("reference", finding);
-  examination.bad("reference", fmt::format("{}; first: {}", finding, check->first_difference));
+  examination.bad(
+      "reference",
+      fmt::format("{}, so no verdict of this attest is valid: install it anew, or build "
+                  "it without -ffast-math and -ffp-contract=fast; first: {}",
+                  finding, check->first_difference));
 }
 
 // The limits of a port's process.
@@ -115,30 +129,40 @@ void examine_limits(const DoctorOptions& options, Examination& examination) {
                                "all processes that it started end with it",
                                options.host.timeout_s, memory, max_file_mib));
   const auto missing = missing_parts(barrier_parts());
-  examination.good(
-      "barrier", missing.empty()
-                     ? "a port cannot open the suite, nor signal or read attest's processes"
-                     : fmt::format("a port cannot read attest's processes, but this kernel has no "
-                                   "barrier for {} (Landlock: files Linux 5.13, signals 6.12)",
-                                   fmt::join(missing, ", ")));
+  if (missing.empty()) {
+    return examination.good("barrier",
+                            "a port cannot open the suite, nor signal or read attest's processes");
+  }
+  const std::string lack =
+      fmt::format("this kernel has no barrier for {} (Landlock: files Linux 5.13, signals 6.12)",
+                  fmt::join(missing, ", "));
+  examination.partly_good("barrier", "a port cannot read attest's processes, but " + lack,
+                          lack + ", so run only ports that you trust");
 }
 
-int doctor_command(const DoctorOptions& options, const Globals& globals) {
-  Examination examination;
+void examine_machine(const DoctorOptions& options, Examination& examination) {
+  examination.begin("the machine");
   examination.good("attest", fmt::format("{}, built by {}", version, compiler()));
   examination.good("machine", fmt::format("{} processors", std::thread::hardware_concurrency()));
   examine_arithmetic(examination);
   examine_functions(examination);
+  examine_limits(options, examination);
+}
+
+int doctor_command(const DoctorOptions& options, const Globals& globals) {
+  Examination examination(globals, options.verbose);
+  examine_machine(options, examination);
+  examination.begin("the suite");
   if (const auto suite = find_suite(globals.suite)) {
     examine_cases(*suite, examination);
+    examine_coverage(*suite, options.verbose, examination);
+    examination.begin("the reference");
     examine_reference(*suite, examination);
-    examine_coverage(*suite, examination);
   } else {
     examination.bad("suite", suite.error().to_string());
   }
-  examine_limits(options, examination);
   examine_port(options.host, examination);
-  return examination.code();
+  return examination.conclude();
 }
 
 }  // namespace
@@ -146,9 +170,11 @@ int doctor_command(const DoctorOptions& options, const Globals& globals) {
 void add_doctor(const CommandLine& line) {
   auto options = std::make_shared<DoctorOptions>();
   const Command command = line.add(
-      "doctor", "Check the machine, the suite, the reference and a port, and report errors");
+      "doctor", "Check the machine, the suite, the reference and a port, and say what works here");
   add_port(command, options->host);
+  add_port_argument(command, options->host);
   add_timeout(command, options->host.timeout_s);
+  add_verbose(command, options->verbose);
   command.examples({{"attest doctor --port lib:./libmine.so",
                      "the machine, the suite, the reference and your port"}});
   command.runs(options, doctor_command);

@@ -6,12 +6,13 @@ namespace {
 
 struct SmokeOptions {
   HostOptions host;
+  bool verbose = false;
 };
 
-int smoke_command(const SmokeOptions& options, const Globals&) {
-  Examination examination;
+int smoke_command(const SmokeOptions& options, const Globals& globals) {
+  Examination examination(globals, options.verbose);
   examine_port(options.host, examination);
-  return examination.code();
+  return examination.conclude();
 }
 
 }  // namespace
@@ -25,6 +26,7 @@ void add_smoke(const CommandLine& line) {
   add_port(command, options->host);
   add_port_argument(command, options->host);
   add_timeout(command, options->host.timeout_s);
+  add_verbose(command, options->verbose);
   command.examples(
       {{"attest smoke --port \"proc:python3 my_port.py\"", "the exchange with a program"},
        {"attest smoke --port lib:./libmine.so", "the functions of a shared library"}});

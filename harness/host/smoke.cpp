@@ -58,9 +58,10 @@ class Smoke {
   }
 
  private:
-  bool find(const std::string& check, const std::string& what, const std::string& wrong) {
+  bool find(const std::string& check, const std::string& what, const std::string& wrong,
+            bool is_remark = false) {
     const std::string whole = what.empty() ? wrong : what + (wrong.empty() ? "" : ": " + wrong);
-    report_({check, whole, wrong.empty()});
+    report_({check, whole, wrong.empty(), is_remark && wrong.empty()});
     return wrong.empty();
   }
 
@@ -80,7 +81,9 @@ class Smoke {
   bool steps() {
     const std::string wrong = fault_with(alone_);
     const std::string what = fmt::format("{} of {}", smoke_steps, name_);
-    return find("steps", unsupported_.empty() ? what : "unsupported: " + unsupported_, wrong);
+    const bool is_supported = unsupported_.empty();
+    return find("steps", is_supported ? what : "unsupported: " + unsupported_, wrong,
+                !is_supported);
   }
 
   bool outputs() {
@@ -129,20 +132,22 @@ class Smoke {
         takes_any ? "but so is MC_NO_SUCH_NAME: return ATTEST_INVALID, so that a misspelled name "
                     "is noticed"
                   : "an unknown name is not";
-    return find("parameters", fmt::format("{} is accepted, {}", name, finding), wrong);
+    return find("parameters", fmt::format("{} is accepted, {}", name, finding), wrong, takes_any);
   }
 
   bool instances() {
     std::string wrong, what = "after another one";
+    bool is_one_at_a_time = false;
     for (const Instances company : {Instances::again, Instances::together}) {
       Trace trace = inputs_;
       wrong = fault_with(trace, company);
       if (wrong.empty() && unsupported_.empty()) wrong = difference(trace, alone_, subject_.module);
       if (!wrong.empty()) break;
-      if (company == Instances::together)
-        what += !unsupported_.empty() ? "; one at a time" : ", and together with one";
+      if (company != Instances::together) continue;
+      is_one_at_a_time = !unsupported_.empty();
+      what += is_one_at_a_time ? "; one at a time" : ", and together with one";
     }
-    return find("instances", "a unit gives the same bits " + what, wrong);
+    return find("instances", "a unit gives the same bits " + what, wrong, is_one_at_a_time);
   }
 
   bool nan() {

@@ -14,6 +14,7 @@ struct SmokeFinding {
   std::string check;  // "steps"
   std::string what;   // "100 of px4-v1.5.5"; if not good, also what is wrong
   bool is_good = true;
+  bool is_remark = false;  // good, but the author of the port should read it
 };
 
 // Steps each unit of `profile` that the port has (not its mixer or battery estimate), with the

@@ -17,7 +17,7 @@ without() {
 }
 
 @test "the starter of the cascade in Python keeps the rules of the exchange" {
-  run "$ATTEST" smoke --port "$both"
+  run "$ATTEST" smoke --verbose --port "$both"
   [ "$status" -eq 0 ]
   lacks FAIL
   [ "$(grep -c '^pass' <<<"$output")" -eq 61 ]

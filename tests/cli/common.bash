@@ -49,6 +49,15 @@ must_fail() {
   fi
 }
 
+# ends PATTERN: its last line matches.
+ends() {
+  [[ ${lines[-1]} == $1 ]] || {
+    echo "expected: $1"
+    echo "at the end of: $output"
+    return 1
+  }
+}
+
 lacks() {
   [[ $output != *"$1"* ]] || {
     echo "not expected: $1"

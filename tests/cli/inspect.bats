@@ -38,8 +38,46 @@ load common
   has 'did you mean `px4-v1.5.5`'
 }
 
-@test "doctor finds this tree in good health, and names the groups that no recording covers" {
+@test "doctor fits on a screen and ends with what works" {
   run "$ATTEST" doctor
+  [ "$status" -eq 0 ]
+  [ "${#lines[@]}" -le 22 ]
+  ends 'PASS the machine, the suite, the reference and the port `builtin` work: * checks*'
+  for line in "${lines[@]}"; do [ "${#line}" -le 200 ]; done
+  has "pass   px4-v1.16.0 22 checks: steps, outputs, repeatable, parameters, instances, NaN"
+  checks=$(grep -o '[0-9]* checks' <<<"${lines[-1]}")
+  run "$ATTEST" doctor --verbose
+  ends "*work: $checks*"
+  has "100 of rate unit of px4-v1.16.0"
+  run "$ATTEST" --quiet doctor
+  [ "$status" -eq 0 ]
+  [ -z "$output" ]
+}
+
+@test "doctor and smoke conclude with what does not work, and with its remedy" {
+  make_suite
+  run "$ATTEST" --suite suite doctor
+  [ "$status" -eq 2 ]
+  ends "FAIL the suite does not work: golden: 1 missing, stale *bless*; the * work"
+  cp "$ATTEST" alone
+  run ./alone doctor
+  [ "$status" -eq 2 ]
+  ends 'FAIL the suite does not work: suite: no suite found; name*; the machine and the port * work'
+  run "$ATTEST" smoke "lib:$PORTS/port_step_fails.so"
+  [ "$status" -eq 1 ]
+  ends "FAIL the port * does not work: steps: 100 of px4-v1.5.5: step at tick *"
+  run "$ATTEST" smoke --verbose "lib:$STARTER"
+  [ "$status" -eq 0 ]
+  has "100 of px4-v1.3.4"
+  ends "PASS the port * works: 13 checks"
+  run "$ATTEST" --quiet smoke "lib:$PORTS/port_step_fails.so"
+  [ "$status" -eq 1 ]
+  lacks "pass "
+  has "FAIL   steps"
+}
+
+@test "doctor finds this tree in good health, and names the groups that no recording covers" {
+  run "$ATTEST" doctor --verbose
   has "of a port's process: 10 s per answer"
   [ "$status" -eq 0 ]
   has "agrees with 81 of 81 traces recorded from the firmware"
@@ -77,7 +115,7 @@ SCRIPT
 # The port does not depend on the suite, and doctor examines a small one sooner.
 @test "doctor lets a port do its first steps" {
   blessed_suite
-  run "$ATTEST" --suite suite doctor --port "lib:$STARTER"
+  run "$ATTEST" --suite suite doctor --verbose --port "lib:$STARTER"
   [ "$status" -eq 0 ]
   has "100 of px4-v1.5.5"
   has "100 of px4-v1.3.4"

@@ -22,7 +22,7 @@ refused() {
 }
 
 @test "the starter in Python conforms, and keeps the rules of the exchange" {
-  run "$ATTEST" smoke --port "$(starter)"
+  run "$ATTEST" smoke --verbose --port "$(starter)"
   [ "$status" -eq 0 ]
   lacks FAIL
   [ "$(grep -c '^pass' <<<"$output")" -eq 13 ]
