@@ -138,9 +138,11 @@ class Replay {
     const Conclusion conclusion = failed_ > 0   ? Conclusion::fail
                                   : passed_ > 0 ? Conclusion::pass
                                                 : Conclusion::none;
-    fmt::print(out_, "{} {} of {} {}{} ({}, {}{})\n", capitals(name_of(conclusion)), passed_,
+    const std::string not_judged = not_judged_text(entries_);
+    fmt::print(out_, "{} {} of {} {}{} ({}, {}{}){}{}\n", capitals(name_of(conclusion)), passed_,
                entries_.size(), what, apart > 0 ? fmt::format(", {} not compared", apart) : "",
-               options_.host.port, name_of(level_), arithmetic_);
+               options_.host.port, name_of(level_), arithmetic_, not_judged.empty() ? "" : "; ",
+               not_judged);
   }
 
   const ReplayOptions& options_;

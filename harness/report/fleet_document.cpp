@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "harness/report/replay_document.hpp"
+
 namespace attest {
 namespace {
 
@@ -40,6 +42,7 @@ FleetRow row_of(const nlohmann::ordered_json& entry, Verdict verdict, const std:
     compared += topic.at("paired").get<std::size_t>();
     within += topic.at("within").get<std::size_t>();
   }
+  const auto reason = entry.at("reason").get<std::string>();
   Cell file = entry.at("file").get<std::string>();
   file.link = link;
   row.cells = {file,
@@ -52,7 +55,7 @@ FleetRow row_of(const nlohmann::ordered_json& entry, Verdict verdict, const std:
                                                          static_cast<double>(compared))
                             : "-",
                compared > 0 ? fmt::format("{:.3g}", row.largest) : "-",
-               entry.at("reason").get<std::string>()};
+               reason.empty() ? not_judged_text({entry}) : reason};
   return row;
 }
 

@@ -127,6 +127,50 @@ void add_single_steps(const SingleSteps& steps, std::vector<Cell>& lines) {
   }
 }
 
+// In which modes a unit publishes a setpoint depends on its inputs.
+bool is_always_published(std::string_view topic) {
+  return topic != "vehicle_rates_setpoint" && topic != "vehicle_attitude_setpoint";
+}
+
+std::vector<std::string> absent_topics(const LoggedUnit& unit) {
+  const ChannelSet outputs = channels_of(unit.module, "out/");
+  std::vector<std::string> present, absent;
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    const std::string topic(channels()[i].topic());
+    if (!outputs[i] || !is_always_published(topic)) continue;
+    std::vector<std::string>& names = unit.trace.present[i] ? present : absent;
+    if (names.empty() || names.back() != topic) names.push_back(topic);
+  }
+  std::erase_if(absent, [&](const std::string& topic) {
+    return std::ranges::find(present, topic) != present.end();
+  });
+  return absent;
+}
+
+constexpr const char* beyond_single_steps = "computed from earlier steps, which the log lacks";
+
+// The outputs of a log that its single steps do not show: a whole topic, or some of its fields.
+void add_beyond_single_steps(const LoggedUnit& unit, const LogResult& result,
+                             std::vector<NotJudged>& found) {
+  for (const LoggedOutput& output : unit.outputs) {
+    std::vector<std::string> fields;
+    std::size_t all = 0;
+    const ChannelSet topic = channels_of(unit.module, fmt::format("out/{}.", output.topic));
+    for (std::size_t i = 0; i < channels().size(); ++i) {
+      const Channel& channel = channels()[i];
+      if (!topic[i] || !unit.trace.present[i] || channel.quantity == Quantity::flag) continue;
+      ++all;
+      if (!result.want.present[i])
+        fields.push_back(fmt::format("{}.{}", output.topic, channel.field()));
+    }
+    if (output.samples == 0 || fields.empty()) continue;
+    if (fields.size() == all) fields = {output.topic};
+    for (std::string& field : fields) {
+      found.push_back({std::move(field), beyond_single_steps});
+    }
+  }
+}
+
 // The first verdict that fails a run; else a pass if there is one; else that of the first unit.
 Verdict worst_of(const std::vector<LogResult>& results) {
   Verdict worst = results.front().result.verdict;
@@ -152,6 +196,19 @@ std::string title_of(const LoggedUnit& log) {
   return fmt::format("{}: {}", log.trace.source, info_of(log.module).title);
 }
 
+std::vector<NotJudged> not_judged_in(const LoggedUnit& unit, const LogResult& result) {
+  std::vector<NotJudged> found;
+  for (std::size_t i = 0; i < result.topics.size(); ++i) {
+    const TopicAgreement& topic = result.topics[i];
+    const bool is_published = result.single_steps || unit.outputs[i].samples > 0;
+    if (!is_published || topic.not_judged.empty()) continue;
+    found.push_back({title_of(topic), topic.not_judged});
+  }
+  if (result.single_steps) add_beyond_single_steps(unit, result, found);
+  for (const std::string& topic : absent_topics(unit)) found.push_back({topic, "not in the log"});
+  return found;
+}
+
 DocumentTable unit_table(const LoggedUnit& unit, const LogResult& result, const LogLimits& limits) {
   DocumentTable table{
       fmt::format("How far the port is from the log: {}", info_of(unit.module).title),
@@ -172,6 +229,14 @@ DocumentTable unit_table(const LoggedUnit& unit, const LogResult& result, const 
     }
     add_deviations(topic, limits, result.result.reason, table.below);
   }
+  if (!result.single_steps) return table;
+  std::vector<NotJudged> beyond;
+  add_beyond_single_steps(unit, result, beyond);
+  std::vector<std::string> names;
+  for (const NotJudged& one : beyond) names.push_back(one.what);
+  if (names.empty()) return table;
+  table.below.emplace_back(fmt::format("{}", fmt::join(names, ", ")));
+  table.below.emplace_back(fmt::format("  not judged: {}", beyond_single_steps));
   return table;
 }
 
@@ -193,6 +258,11 @@ Document log_document(const FlightLog& log, const std::vector<LogResult>& result
     document.facts.push_back({title, std::string(name_of(result.verdict))});
     if (!result.reason.empty()) {
       document.notes.push_back({title + ": " + result.reason, fails_a_run(result.verdict)});
+    }
+    if (is_judged(result.verdict)) {
+      for (const auto& [what, why] : not_judged_in(unit, results[i])) {
+        document.notes.push_back({fmt::format("{}: not judged: {} ({})", title, what, why)});
+      }
     }
     if (!results[i].topics.empty()) document.tables.push_back(unit_table(unit, results[i], limits));
     if (logged.samples.empty()) continue;

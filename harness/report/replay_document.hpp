@@ -16,8 +16,9 @@
 // outside the limit and not "between_samples" (compare/log_agreement.hpp). A topic with such a
 // sample has the member "first_unexplained": tick, timestamp_us, channel, got, logged. An entry of
 // the kind "trace" has, in place of has_every_step, topics and notes, the members deviating_ticks,
-// first, worst and tightest of the report of a run (report.schema.json). A log that passes has
-// "pass_means", a text for people.
+// first, worst and tightest of the report of a run (report.schema.json). A judged log has
+// "not_judged": [{"what": "actuator_controls_0", "why": "it depends on ..."}], the outputs that did
+// not decide. A log that passes has "pass_means", a text for people.
 #pragma once
 
 #include <string>
@@ -35,6 +36,19 @@ namespace attest {
 
 // What a pass by a log says, and the command that lists the mistakes that the log shows.
 std::string meaning_of_pass(const std::string& log);
+
+// Outputs of a judged unit that did not decide its verdict.
+struct NotJudged {
+  std::string what;  // "actuator_controls_0", "vehicle_torque_setpoint.xyz[2]"
+  std::string why;
+
+  bool operator==(const NotJudged&) const = default;
+};
+std::vector<NotJudged> not_judged_in(const LoggedUnit& unit, const LogResult& result);
+
+// The same of entries of the report of `replay`: "not judged: actuator_controls_0 (it depends on
+// ...)", each output once. Empty if all outputs were judged.
+std::string not_judged_text(const std::vector<nlohmann::ordered_json>& entries);
 
 // "flight.ulg"; for a unit of v1.14 to v1.18 "flight.ulg: attitude unit".
 std::string title_of(const LoggedUnit& log);

@@ -1,5 +1,10 @@
+#include <algorithm>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "harness/core/json_reader.hpp"
@@ -93,11 +98,36 @@ ordered_json json_of_unit(const FlightLog& log, const LoggedUnit& unit, const Lo
             : topic_of(topic, unit.outputs[i].samples, unit.outputs[i].paired, limits));
   }
   if (result.single_steps) entry["single_steps"] = json_of_steps(*result.single_steps);
+  if (is_judged(result.result.verdict)) {
+    entry["not_judged"] = ordered_json::array();
+    for (const auto& [what, why] : not_judged_in(unit, result)) {
+      entry["not_judged"].push_back({{"what", what}, {"why", why}});
+    }
+  }
   entry["notes"] = log.notes;
   if (result.result.verdict == Verdict::pass) {
     entry["pass_means"] = meaning_of_pass(unit.trace.source);
   }
   return entry;
+}
+
+std::string not_judged_text(const std::vector<ordered_json>& entries) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> by_reason;
+  for (const ordered_json& entry : entries) {
+    for (const ordered_json& one : entry.value("not_judged", ordered_json::array())) {
+      const auto why = one.at("why").get<std::string>(), what = one.at("what").get<std::string>();
+      auto known = std::ranges::find(by_reason, why, &decltype(by_reason)::value_type::first);
+      if (known == by_reason.end()) known = by_reason.insert(known, {why, {}});
+      if (std::ranges::find(known->second, what) == known->second.end()) {
+        known->second.push_back(what);
+      }
+    }
+  }
+  std::vector<std::string> parts;
+  for (const auto& [why, outputs] : by_reason) {
+    parts.push_back(fmt::format("{} ({})", fmt::join(outputs, ", "), why));
+  }
+  return parts.empty() ? "" : fmt::format("not judged: {}", fmt::join(parts, "; "));
 }
 
 std::string replay_json(const std::string& port, std::string_view level, const LogLimits& limits,

@@ -78,6 +78,10 @@ $2 rate unit" ] || {
   has "passes if at least 85% of the samples are within 0.0001 of the log, and at most 2% differ"
   has "passes if at least 98% of the single steps are within 0.0001 of the log"
   [ "${lines[-2]}" = "$meaning" ]
+  local beyond="vehicle_torque_setpoint.xyz[2], rate_ctrl_status, vehicle_rates_setpoint"
+  local why="computed from earlier steps, which the log lacks"
+  ends "PASS 2 of 2 traces and units agree (builtin, numeric); not judged: *${beyond/[/\\[} ($why)"
+  grep -qF "rate unit: not judged: rate_ctrl_status ($why)" page.html
   grep -qF "$meaning" page.html
   grep -q "passes if at least 98% of the single steps" page.html
   local judged  # of each unit; the page has the same numbers
@@ -85,6 +89,9 @@ $2 rate unit" ] || {
   [ -n "$judged" ]
   for steps in $judged; do grep -q "\b$steps single steps\b" page.html; done
   [ "$(grep -cF "\"pass_means\": \"$meaning\"" replay.json)" -eq 2 ]
+  grep -A1 '"what": "rate_ctrl_status"' replay.json | grep -qF "\"why\": \"$why\""
+  run "$ATTEST" replay "$SPARSE" "$SPARSE" --html fleet.html
+  [ "$(grep -cF "not judged: ${beyond} ($why)" fleet.html)" -ge 1 ]
 }
 
 @test "logs of other releases agree with the law of their release" {
