@@ -1,5 +1,6 @@
 #include "harness/cli/conclude.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <optional>
 #include <string>
@@ -10,11 +11,13 @@
 #include <unistd.h>
 
 #include "harness/cli/run_plan.hpp"
+#include "harness/cli/supported_profiles.hpp"
 #include "harness/core/interrupt.hpp"
 #include "harness/diagnosis/diagnose_run.hpp"
 #include "harness/report/conclusion.hpp"
 #include "harness/report/github.hpp"
 #include "harness/report/terminal.hpp"
+#include "harness/report/text.hpp"
 #include "harness/verify/silent_topics.hpp"
 
 namespace attest::cli {
@@ -43,6 +46,23 @@ std::optional<Diagnosis> diagnosed(const RunResult& run, const Examined& examine
   // This diagnosis used only some of the vectors. The verdicts are complete.
   fmt::print(stderr, "attest: interrupted; the reports do not have the probable mistake\n");
   return std::nullopt;
+}
+
+// If no vector was compared because the port supports none of their profiles: what it supports.
+std::optional<Error> other_profiles(const RunResult& run, const HostOptions& host) {
+  const auto applies = [](const VectorResult& result) {
+    return result.applies || result.verdict != Verdict::skip;
+  };
+  if (!run.errors.empty() || std::ranges::any_of(run.results, applies)) return std::nullopt;
+  std::vector<std::string> profiles;
+  for (const VectorResult& result : run.results) {
+    if (std::ranges::find(profiles, result.profile) == profiles.end()) {
+      profiles.push_back(result.profile);
+    }
+  }
+  return supported_instead(host, profiles, [](const std::string& profile, const std::string& port) {
+    return "attest run --profile " + profile + port;
+  });
 }
 
 int exit_code(const RunResult& run) {
@@ -107,11 +127,14 @@ int conclude(const RunResult& run, const Examined& examined, const ReportOptions
   // Before the summary is printed: if the reader of stdout closes the pipe early, SIGPIPE ends this
   // process.
   const auto written = write_reports(reports, {run, diagnosis, examined.traces});
-  const int code = exit_code(run);
+  const auto unsupported = other_profiles(run, examined.host);
+  const int code = unsupported ? report_error(*unsupported) : exit_code(run);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   if (!globals.quiet || code != exit_ok) {
     const std::string summary =
-        render_summary(run, wall.count(), terminal_style(stdout), diagnosis, options.verbose);
+        unsupported
+            ? fmt::format("{} {}\n", capitals(name_of(conclusion_of(run))), conclusion_text(run))
+            : render_summary(run, wall.count(), terminal_style(stdout), diagnosis, options.verbose);
     fmt::print("{}", options.github ? without_commands(summary) : summary);
   }
   if (options.github) write_for_github(run, wall.count(), diagnosis);

@@ -14,6 +14,7 @@
 #include "harness/cli/hunt_progress.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/shared_arguments.hpp"
+#include "harness/cli/supported_profiles.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/interrupt.hpp"
 #include "harness/core/suggestion.hpp"
@@ -70,9 +71,14 @@ Result<std::vector<ModuleUnderTest>> subjects_of(const HuntCommandOptions& optio
     std::ranges::move(subjects_in(profile, port.modules & *chosen), std::back_inserter(subjects));
   }
   if (!subjects.empty()) return subjects;
-  return fail(fmt::format("the port {} has no such module in these profiles: {} of {}",
-                          options.host.port, fmt::join(names_of(*chosen), ", "),
-                          fmt::join(options.profiles, ", ")));
+  return tl::unexpected(
+      supported_instead(options.host, options.profiles,
+                        [](const std::string& profile, const std::string& with) {
+                          return "attest hunt --profile " + profile + with;
+                        })
+          .value_or(Error{fmt::format("the port {} has no such module in these profiles: {} of {}",
+                                      options.host.port, fmt::join(names_of(*chosen), ", "),
+                                      fmt::join(options.profiles, ", "))}));
 }
 
 struct HuntPlan {

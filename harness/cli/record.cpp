@@ -9,6 +9,7 @@
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/cli/supported_profiles.hpp"
 #include "harness/host/file_format.hpp"
 #include "harness/verify/fixed_step.hpp"
 
@@ -31,7 +32,14 @@ Result<Trace> recorded(const RecordOptions& options, const SuiteFolder& suite) {
   Trace trace = inputs_for((*host)->declarations(), *the_case, *rate);
   const auto fault = (*host)->drive(subject_of(*the_case), trace);
   if (!fault) return trace;
-  return fail_at(options.host.port, fmt::format("{}: {}", trace.source, fault->what));
+  const auto cases_of = [](const std::string& profile, const std::string& port) {
+    return fmt::format("attest record CASE --rate 250{}, with a CASE of `attest list --profile {}`",
+                       port, profile);
+  };
+  return tl::unexpected(
+      supported_instead(options.host, {the_case->profile}, cases_of)
+          .value_or(fail_at(options.host.port, fmt::format("{}: {}", trace.source, fault->what))
+                        .value()));
 }
 
 Result<void> record(const RecordOptions& options, const Globals& globals) {

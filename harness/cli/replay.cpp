@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,10 +15,12 @@
 #include "harness/cli/read_log.hpp"
 #include "harness/cli/replayed_file.hpp"
 #include "harness/cli/shared_arguments.hpp"
+#include "harness/cli/supported_profiles.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/interrupt.hpp"
 #include "harness/core/json_text.hpp"
 #include "harness/port/port.hpp"
+#include "harness/port/profiles.hpp"
 #include "harness/report/fleet_document.hpp"
 #include "harness/report/progress.hpp"
 #include "harness/report/replay_document.hpp"
@@ -64,7 +67,7 @@ class Replay {
     if (status != exit_ok) return status;
     if (failed_ > 0) return exit_failed;
     if (passed_ > 0) return exit_ok;
-    return report_error({"no trace was compared: every trace was skipped or unsupported"});
+    return report_error(nothing_compared());
   }
 
  private:
@@ -121,6 +124,20 @@ class Replay {
     for (const std::string& entry : file.entries) log.entries.push_back(ordered_json_from(entry));
     entries_.insert(entries_.end(), log.entries.begin(), log.entries.end());
     logs_.push_back(std::move(log));
+  }
+
+  Error nothing_compared() const {
+    std::set<std::string> profiles;
+    for (const auto& entry : entries_) {
+      if (const auto profile = entry.at("profile").get<std::string>(); find_profile(profile)) {
+        profiles.insert(profile);
+      }
+    }
+    const auto with_trace = [](const std::string& profile, const std::string& port) {
+      return fmt::format("attest replay TRACE_OF_{}.csv{}", profile, port);
+    };
+    return supported_instead(options_.host, {profiles.begin(), profiles.end()}, with_trace)
+        .value_or(Error{"no trace was compared: every trace was skipped or unsupported"});
   }
 
   // A log of v1.14 to v1.18 counts once for each of its units.

@@ -8,6 +8,7 @@
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/cli/supported_profiles.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/json_reader.hpp"
 #include "harness/core/json_text.hpp"
@@ -150,7 +151,9 @@ int schedule_command(const ScheduleOptions& options, const Globals& globals) {
   for (const VectorResult& result : outcome.results) {
     if (fails_a_run(result.verdict)) return exit_failed;
     if (result.verdict != Verdict::pass) {
-      return report_error({fmt::format("no flight took place: {}", result.reason)});
+      return report_error(
+          supported_instead(options.host, {result.profile}, hover_command("attest sim"))
+              .value_or(Error{fmt::format("no flight took place: {}", result.reason)}));
     }
   }
   return exit_ok;

@@ -13,6 +13,7 @@
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/cli/supported_profiles.hpp"
 #include "harness/core/file.hpp"
 #include "harness/golden/reference.hpp"
 #include "harness/host/file_format.hpp"
@@ -285,7 +286,11 @@ int sim_command(const SimOptions& options, const Globals& globals) {
   if (any_shown && any_result) {
     fmt::print(to, "{}", verdict_line(flights, document, host.port == HostOptions().port));
   }
-  if (!any_result) return report_error({"the port did not fly: no flight has a result"});
+  if (!any_result) {
+    return report_error(
+        supported_instead(options.host, {sim->the_case.profile}, hover_command("attest sim"))
+            .value_or(Error{"the port did not fly: no flight has a result"}));
+  }
   return any_fails ? exit_failed : exit_ok;
 }
 

@@ -12,6 +12,7 @@
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/cli/supported_profiles.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/interrupt.hpp"
 #include "harness/process/program.hpp"
@@ -236,8 +237,10 @@ int stress_command(const StressOptions& options, const Globals& globals) {
   if (run.interrupted) return exit_interrupted;
   if (all.failed()) return exit_failed;
   if (const auto missing = rates_not_judged(run); !missing.empty()) {
-    return report_error(
-        {fmt::format("not judged: {} Hz; see the reasons above", fmt::join(missing, " Hz, "))});
+    return report_error(supported_instead(options.host, {run.results.front().result.profile},
+                                          hover_command("attest stress --case"))
+                            .value_or(Error{fmt::format("not judged: {} Hz; see the reasons above",
+                                                        fmt::join(missing, " Hz, "))}));
   }
   return exit_ok;
 }

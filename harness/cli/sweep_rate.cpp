@@ -8,6 +8,7 @@
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/cli/supported_profiles.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/interrupt.hpp"
 #include "harness/measure/rate_sweep.hpp"
@@ -114,7 +115,10 @@ int sweep_rate_command(const RateSweepOptions& options, const Globals& globals) 
       std::any_of(outcome.results.begin(), outcome.results.end(),
                   [](const RateSweepResult& found) { return is_judged(found.result.verdict); });
   if (!any_result) {
-    return report_error({"the port did not fly: " + reason_text(outcome.results.front().result)});
+    return report_error(supported_instead(options.host, {plan->the_case.profile},
+                                          hover_command("attest sweep-rate --case"))
+                            .value_or(Error{"the port did not fly: " +
+                                            reason_text(outcome.results.front().result)}));
   }
 
   const RateSweepRun run{options.host.port, plan->port, plan->the_case, plan->rates,

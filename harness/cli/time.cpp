@@ -8,6 +8,7 @@
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/cli/supported_profiles.hpp"
 #include "harness/core/file.hpp"
 #include "harness/core/interrupt.hpp"
 #include "harness/host/step_timer.hpp"
@@ -176,10 +177,17 @@ int report(const TimeCommandOptions& options, const TimeRun& run, const Document
 }
 
 // No vector was timed.
-int report_untimed(const TimeRun& run) {
+int report_untimed(const TimeRun& run, const TimeCommandOptions& options,
+                   const std::vector<SelectedCase>& cases) {
   const Document document = time_document(run);
   if (!fails_a_run(document.head.verdict)) {
-    return report_error({"no vector was timed: every selected vector was skipped or unsupported"});
+    return report_error(
+        supported_instead(options.host, profiles_in(cases),
+                          [](const std::string& profile, const std::string& port) {
+                            return "attest time --profile " + profile + port;
+                          })
+            .value_or(
+                Error{"no vector was timed: every selected vector was skipped or unsupported"}));
   }
   fmt::print("{}", render_text(document, terminal_style(stdout)));
   return exit_failed;
@@ -225,7 +233,7 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
               port->port.name,
               measure.counter};
   const VectorTimes* const slowest = run.times.with_slowest_step();
-  if (!slowest) return report_untimed(run);
+  if (!slowest) return report_untimed(run, options, *cases);
   if (!options.measure.worst.empty()) {
     const auto written = write_slowest(run.times, *cases, host, *std::move(worst));
     if (!written) return report_error(written.error());

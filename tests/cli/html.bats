@@ -151,17 +151,18 @@ PORT
   port=(--port "lib:$PORTS/port_other_profiles.so")
   run "$ATTEST" sim hover --rate 250 "${port[@]}" --html page.html
   [ "$status" -eq 2 ]
-  has "the port did not fly"
+  has "not px4-v1.5.5; write: attest sim px4-v1.18/flight/hover --rate 250:1000 --port lib:"
   run "$ATTEST" replay recorded.csv --profile px4-v1.5.5 "${port[@]}" --html page.html
   [ "$status" -eq 2 ]
-  has "no trace was compared"
+  has "not px4-v1.5.5; write: attest replay TRACE_OF_px4-v1.18.csv --port lib:"
   run "$ATTEST" sweep-rate --rates 250 "${port[@]}" --html page.html --csv page.html.csv
   [ "$status" -eq 2 ]
-  has "the port did not fly: the port does not support profile px4-v1.5.5"
+  has "not px4-v1.5.5; write: attest sweep-rate --case px4-v1.18/flight/hover --rate 250:1000 "
   [ ! -e page.html.csv ]
   run "$ATTEST" stress --rates 250 --duration 0.1 "${port[@]}" --html page.html
   [ "$status" -eq 2 ]
   has "not judged: 250 Hz"
+  has "not px4-v1.5.5; write: attest stress --case px4-v1.18/flight/hover --rate 250:1000 "
   [ "$(cat page.html)" = old ]
 }
 

@@ -168,9 +168,8 @@ TASKS
 @test "a profile that the port refuses is skipped, and nothing compared is not success" {
   judged refuses_profile
   [ "$status" -eq 2 ]
-  has "does not support profile px4-v1.5.5"
   has "note: the port does not support px4-v1.5.5; it printed: no gains for px4-v1.5.5"
-  has "no vector was compared"
+  has "supports no profile: its create() returned NULL for each of px4-v1.5.5, px4-v1.3.4, "
 }
 
 @test "writing past the outputs breaks the ABI" {
@@ -289,4 +288,24 @@ TASKS
   [ "$status" -eq 0 ]
   has "the port makes no module rate_unit of profile px4-v1.16.0"
   lacks "FAIL"
+}
+
+@test "a port of other releases gets one line: what it supports, and the command for it" {
+  port="lib:$PORTS/port_other_profiles.so"
+  run "$ATTEST" run --port "$port" --profile v1.5.5 --json r.json
+  [ "$status" -eq 2 ]
+  [ "${#lines[@]}" -eq 2 ]
+  has "attest: error: $port supports px4-v1.18, px4-v1.17, px4-v1.16.0, px4-v1.15.4, px4-v1.14.4, \
+not px4-v1.5.5; write: attest run --profile px4-v1.18 --port $port"
+  ends "NONE 0 vectors passed, 0 failed; * do not apply to this port *"
+  grep -q '"the port does not support profile px4-v1.5.5"' r.json
+  command=$(sed -n 's/.*; write: attest //p' <<<"$output")
+  run "$ATTEST" $command --filter 'rates/p_alone@250hz'
+  [ "$status" -eq 0 ]
+  for command in "hunt --profile v1.5.5" "time --profile v1.5.5 --rate 250" \
+    "record px4-v1.5.5/rates/p_alone --rate 250"; do
+    run "$ATTEST" $command --port "$port"
+    [ "$status" -eq 2 ]
+    [[ $output == "attest: error: $port supports px4-v1.18, "*", not px4-v1.5.5; write: attest "* ]]
+  done
 }

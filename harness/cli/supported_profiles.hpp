@@ -1,0 +1,32 @@
+// The error of a command whose cases are all of releases that the port does not have.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/casefile/select.hpp"
+#include "harness/core/result.hpp"
+#include "harness/host/port_process.hpp"
+
+namespace attest::cli {
+
+// A command line for a profile. `port` is " --port lib:mine.so".
+using CommandFor = std::function<std::string(const std::string& profile, const std::string& port)>;
+
+// "lib:mine.so supports px4-v1.18, px4-v1.17, not px4-v1.5.5; write: attest run --profile px4-v1.18
+// --port lib:mine.so". Asks the port again, for every profile. Empty: `missing` is empty, the port
+// supports one of them, or the question ends by a crash or a timeout.
+std::optional<Error> supported_instead(const HostOptions& host,
+                                       const std::vector<std::string>& missing,
+                                       const CommandFor& command);
+
+// Those of the cases, each once.
+std::vector<std::string> profiles_in(const std::vector<SelectedCase>& cases);
+
+// `begin` with the hover flight of the profile: "attest sim px4-v1.18/flight/hover --rate 250:1000
+// --port lib:mine.so".
+CommandFor hover_command(const std::string& begin);
+
+}  // namespace attest::cli
