@@ -37,6 +37,10 @@
  * only. The unit owns the result of create() until destroy(). The table, `name`, `version` and all
  * results of extension() must stay valid and unchanged until the library is unloaded. A step should
  * neither allocate nor block.
+ *
+ * Text: a unit may print on stdout and stderr. The host keeps the text apart from its own. A report
+ * shows the last line if the unit crashes, returns ATTEST_FAILED or has a wrong output. `attest run
+ * --in-process` shows all of it, on stderr.
  */
 #ifndef ATTEST_UNIT_H
 #define ATTEST_UNIT_H

@@ -13,6 +13,7 @@
 #include "harness/cli/plotted_traces.hpp"
 #include "harness/cli/run_plan.hpp"
 #include "harness/cli/shared_arguments.hpp"
+#include "harness/cli/stdout_diversion.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/interrupt.hpp"
 #include "harness/report/progress.hpp"
@@ -143,6 +144,7 @@ int run_command(const RunOptions& given, const Globals& globals) {
   if (!traces) return report_error(traces.error());
   auto reports = open_reports(options.report);
   if (!reports) return report_error(reports.error());
+  StdoutDiversion diversion(options.host.in_process);
   auto plan = make_plan(traces->planned(options), *suite);
   if (!plan) return report_error(plan.error());
   plan->run.suite_folder = globals.suite;
@@ -156,6 +158,7 @@ int run_command(const RunOptions& given, const Globals& globals) {
     remember_last_run(run);
     ReportOptions without_diagnosis = options.report;
     without_diagnosis.diagnose = false;
+    diversion.end();
     conclude(run, {plan->cases, plan->host, options.jobs, {}}, without_diagnosis,
              *std::move(reports), begin, globals);
     return exit_interrupted;
@@ -170,6 +173,7 @@ int run_command(const RunOptions& given, const Globals& globals) {
   }
   const auto save_traces = [&](const std::string& named) {
     traces->save(*plan, *suite, options, named);
+    diversion.end();  // from here on, the port does not run
   };
   return conclude(run, {plan->cases, plan->host, options.jobs, traces->folder(), save_traces},
                   options.report, *std::move(reports), begin, globals);
@@ -206,8 +210,8 @@ void add_execution(Command command, RunOptions& options) {
   add_timeout(command, options.host.timeout_s);
   command
       .flag("--in-process", options.host.in_process,
-            "Run the port in attest's own process, for a debugger or a sanitizer; the "
-            "result is then partial")
+            "Run the port in attest's own process, for a debugger or a sanitizer; what it prints "
+            "is shown on stderr, and the result is partial")
       .group(option_group::execution);
 }
 

@@ -7,6 +7,7 @@
 #include "harness/cli/exchange_note.hpp"
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/shared_arguments.hpp"
+#include "harness/cli/stdout_diversion.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/cli/supported_profiles.hpp"
 #include "harness/core/file.hpp"
@@ -213,6 +214,7 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
     if (!file) return report_error(file.error());
     budget_file.emplace(*std::move(file));
   }
+  StdoutDiversion diversion(options.host.in_process);
   const auto port = open_timed(options);
   if (!port) return report_error(port.error());
   const HostOptions& host = port->host;
@@ -233,6 +235,7 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
               port->port.name,
               measure.counter};
   const VectorTimes* const slowest = run.times.with_slowest_step();
+  if (!slowest) diversion.end();
   if (!slowest) return report_untimed(run, options, *cases);
   if (!options.measure.worst.empty()) {
     const auto written = write_slowest(run.times, *cases, host, *std::move(worst));
@@ -246,6 +249,7 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
     if (interrupted()) return exit_interrupted;
   }
   if (auto same = check_port(host); !same) return report_error(same.error());
+  diversion.end();
   const Document document = time_document(run);
   for (const auto& written :
        {json->commit(time_json(run)),

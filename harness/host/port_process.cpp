@@ -151,7 +151,7 @@ class PortProcess final : public PortHost {
 
   const std::optional<PortFault>& fault() const { return fault_; }
 
-  std::string last_words() const { return port_ ? port_->child.last_words() : ""; }
+  std::string last_words() const override { return port_ ? port_->child.last_words() : ""; }
 
  private:
   std::optional<PortFault> drive_part(const ModuleUnderTest& subject, std::span<Sample> samples,

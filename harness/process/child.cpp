@@ -16,6 +16,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
+#include <stdio_ext.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -80,6 +81,8 @@ void run_in_child(const Barrier* barrier, const ChildFiles& files, const Child::
     barrier->enter();
   }
   keep_only(files);
+  ::__fpurge(stdout);                        // what the parent has not yet written
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // last_words() has each line at once
   MessageSocket socket(files.socket);
   try {
     work(socket);

@@ -124,9 +124,12 @@ Result<VectorResult> CaseJob::judged(const Vector& vector) {
   if (auto opened = open_golden(vector); !opened) return tl::unexpected(opened.error());
   const Case& the_case = *vector.the_case;
   const RunConfiguration& configuration = vector.configuration;
-  if (!vehicle_model_)
-    return evaluate_case(the_case, configuration.rate.motor_unit, *golden_, *host_, judge_);
-  return evaluate_flight(the_case, configuration, *vehicle_model_, *golden_, *host_, judge_);
+  auto result =
+      vehicle_model_
+          ? evaluate_flight(the_case, configuration, *vehicle_model_, *golden_, *host_, judge_)
+          : evaluate_case(the_case, configuration.rate.motor_unit, *golden_, *host_, judge_);
+  if (result) add_last_words(*host_, *result);
+  return result;
 }
 
 Result<VectorResult> TimedJob::run(std::size_t) {

@@ -215,6 +215,16 @@ Tolerances tolerances_of_trace(const Tolerances& tolerances, Module module,
 
 }  // namespace
 
+void add_last_words(const PortHost& host, VectorResult& result) {
+  const bool is_wrong = result.verdict == Verdict::fail || result.verdict == Verdict::non_finite;
+  if (!is_wrong || !result.first) return;
+  const std::string words = host.last_words();
+  if (words.empty()) return;
+  const std::string reason =
+      result.reason.empty() ? std::string(meaning_of(result.verdict)) : result.reason;
+  result.reason = fmt::format("{}; the port last printed: {}", reason, words);
+}
+
 VectorResult evaluate_trace(const Trace& recorded, const ModuleUnderTest& subject, PortHost& host,
                             const Tolerances& tolerances, Trace* got) {
   const Stopwatch stopwatch;
@@ -225,6 +235,7 @@ VectorResult evaluate_trace(const Trace& recorded, const ModuleUnderTest& subjec
   const Tolerances allowed =
       tolerances_of_trace(tolerances, subject.module, host.declarations(), recorded.samples.size());
   run_and_judge(answered, recorded, subject, host, allowed, {}, result);
+  add_last_words(host, result);
   result.elapsed_s = stopwatch.elapsed_s();
   if (got != nullptr) *got = std::move(answered);
   return result;
@@ -297,6 +308,7 @@ Result<VectorResult> evaluate_parts(TraceParts& recorded, const ModuleUnderTest&
     judge(*compared, result);
     if (fault) judge_after(*fault, result);
   }
+  add_last_words(host, result);
   result.elapsed_s = stopwatch.elapsed_s();
   return result;
 }

@@ -62,6 +62,9 @@ Result<VectorResult> evaluate_timed_flight(const Case& the_case,
                                            const FlightTiming& timing, PortHost& host,
                                            const JudgeOptions& options = {});
 
+// If an output is wrong, adds to the reason the last line that the port printed, if there is one.
+void add_last_words(const PortHost& host, VectorResult& result);
+
 // "the flight ended at 0.412 s (tick 103): the body rate is 81 rad/s, beyond 80". REQUIRES:
 // Flown::divergence is set.
 std::string how_it_ended(const Flown& flown);

@@ -290,6 +290,32 @@ TASKS
   lacks "FAIL"
 }
 
+@test "what a port prints is shown if it fails, and is never on the stdout of attest" {
+  local one=(printing.so --filter 'px4-v1.5.5/rates/p_alone@250hz') in_process
+  cp "$SOURCE"/controller/starters/c/*.[ch] .
+  sed -i 's/^static int step(.*{$/&\n  printf("my rate is %g\\n", in->control_state.roll_rate);/
+    1i #include <stdio.h>' unit.c
+  cc -shared -fPIC -ffp-contract=off "-I$SOURCE/controller" ./*.c -lm -o printing.so
+  for in_process in "" --in-process; do
+    "$ATTEST" run "${one[@]}" --json - $in_process >report.json 2>messages
+    "$PYTHON" -m json.tool report.json >/dev/null
+    "$ATTEST" run "${one[@]}" $in_process >text 2>>messages
+    "$ATTEST" time "${one[@]}" $in_process >>text 2>>messages
+    run grep "my rate is" text report.json
+    [ "$status" -eq 1 ]
+  done
+  [ "$(grep -c '^my rate is' messages)" -ge 30 ]
+  sed -i 's/rates_sp\[i\] - rates\[i\];/rates_sp[i] + rates[i];/' rate.c
+  cc -shared -fPIC -ffp-contract=off "-I$SOURCE/controller" ./*.c -lm -o printing.so
+  run "$ATTEST" run "${one[@]}"
+  [ "$status" -eq 1 ]
+  has "differs from the reference; the port last printed: my rate is "
+  "$ATTEST" record px4-v1.5.5/rates/p_alone --rate 250 --out right.csv
+  run "$ATTEST" replay right.csv --port lib:./printing.so
+  [ "$status" -eq 1 ]
+  has "the port last printed: my rate is "
+}
+
 @test "a port of other releases gets one line: what it supports, and the command for it" {
   port="lib:$PORTS/port_other_profiles.so"
   run "$ATTEST" run --port "$port" --profile v1.5.5 --json r.json
