@@ -111,6 +111,7 @@ Result<void> write_findings(const std::string& out, HuntReport& report) {
     finding.name = free_name(folder, finding);
     const fs::path file = folder / (finding.name + ".toml"),
                    trace = traces / (finding.name + ".csv");
+    report.suite = out;
     if (auto done = write_new_case(file, finding.toml); !done) return done;
     if (auto done = write_csv(trace, finding.trace, all_columns(finding.trace)); !done) return done;
     written = {file.string(), trace.string(),

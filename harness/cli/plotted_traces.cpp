@@ -43,7 +43,9 @@ void PlottedTraces::save(const RunPlan& plan, const SuiteFolder& suite, const Ru
   VehicleModels vehicle_models(suite.models());
   const auto jobs = case_jobs(
       keep_vectors(plan.cases, ids), std::make_shared<const Goldens>(suite.golden(), plan.suite),
-      vehicle_models, {plan.run.level, folder_, plan.run.parameters}, plan.host);
+      vehicle_models,
+      {plan.run.level, folder_, plan.run.parameters, false, judged_by_reference(suite, plan.run)},
+      plan.host);
   JobOptions<VectorResult> again;
   again.processes = options.jobs;
   again.in_process = plan.host.in_process;

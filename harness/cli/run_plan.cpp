@@ -184,7 +184,9 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
   VehicleModels vehicle_models(suite.models());
   auto jobs =
       case_jobs(*cases, std::make_shared<const Goldens>(suite.golden(), plan.suite), vehicle_models,
-                {plan.run.level, options.save_traces, plan.run.parameters, true}, plan.host);
+                {plan.run.level, options.save_traces, plan.run.parameters, true,
+                 judged_by_reference(suite, plan.run)},
+                plan.host);
   if (!jobs) return tl::unexpected(jobs.error());
   plan.jobs = *std::move(jobs);
   plan.run.selection = options.select.narrowing();
@@ -277,12 +279,18 @@ Result<ExpectedFailures> read_expected(const std::string& file, const SuiteFolde
 
 }  // namespace
 
+bool judged_by_reference(const SuiteFolder& suite, const RunResult& run) {
+  return suite.base.has_value() && run.suite_reference.empty();
+}
+
 void name_files(const std::vector<SelectedCase>& cases, const SuiteFolder& suite, RunResult& run) {
   const std::filesystem::path golden = path_from_here(suite.golden());
+  const Goldens goldens(suite.golden());
   for (const SelectedCase& selected : cases) {
     const std::string id = selected.the_case.id();
     run.case_files[id] = path_from_here(selected.the_case.file);
     run.whys[id] = selected.the_case.why;
+    if (!goldens.has(selected.the_case)) continue;
     run.golden_files[id] = golden_file(golden, key_of(selected.the_case)).string();
   }
 }

@@ -41,6 +41,10 @@ struct RunPlan {
 // port cannot be opened; recorded outputs are for other inputs; a file that cannot be read.
 Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite);
 
+// Whether cases without a golden are judged by the reference alone: those of a suite with a base,
+// unless a port is the reference of the suite. In any other suite a missing golden is an error.
+bool judged_by_reference(const SuiteFolder& suite, const RunResult& run);
+
 // Stores the paths of the case files and of the goldens in `run`, for its reports.
 void name_files(const std::vector<SelectedCase>& cases, const SuiteFolder& suite, RunResult& run);
 

@@ -147,6 +147,11 @@ const Result<GoldenOrigins>& Goldens::origins_of(const std::string& profile) con
   return origins_.emplace(profile, read_origins(profile)).first->second;
 }
 
+bool Goldens::has(const Case& the_case) const {
+  const auto& origins = origins_of(the_case.profile);
+  return !origins || origins->contains(key_of(the_case));
+}
+
 std::string Goldens::reference() const {
   std::set<std::string> ports;
   for (const fs::path& folder : suite_folders_in(root_).value_or(std::vector<fs::path>())) {

@@ -64,6 +64,10 @@ class Goldens {
   // Errors: those of the file with the origins. A profile without that file has none.
   const Result<GoldenOrigins>& origins_of(const std::string& profile) const;
 
+  // Whether the origins name a golden of the case. True if they cannot be read, which open()
+  // reports.
+  bool has(const Case& the_case) const;
+
   // The description of the port that made the goldens; of all such ports, after `; `, if a killed
   // bless has left several. Empty: they are those of attest's own reference. Reads the origins of
   // all profiles; those that cannot be read are left out, because a run of their cases reports it.

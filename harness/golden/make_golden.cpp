@@ -98,6 +98,18 @@ std::optional<PortFault> GoldenSource::drive(const ModuleUnderTest& subject, Tra
                                comparison.first ? comparison.first->tick : 0)};
 }
 
+Result<Golden> golden_by_reference(const Case& the_case, const RunConfiguration& configuration,
+                                   const VehicleModel* vehicle_model) {
+  MadeGolden made;
+  GoldenOrigin origin;
+  GoldenSource source = GoldenSource::own();
+  const auto added = vehicle_model ? add_flight(the_case, configuration, *vehicle_model, made)
+                                   : add_open_loop(the_case, configuration, source, made);
+  if (!added) return tl::unexpected(added.error());
+  if (vehicle_model) origin.models = hashes_of(vehicle_model->vehicle());
+  return Golden("the reference", std::move(origin), std::move(made.traces));
+}
+
 Result<MadeGolden> make_golden(const Case& the_case, GoldenSource& source,
                                VehicleModels& vehicle_models, const std::function<bool()>& stop) {
   MadeGolden made;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "harness/golden/golden.hpp"
 #include "harness/golden/new_goldens.hpp"
 #include "harness/host/port_process.hpp"
 #include "harness/plant/vehicle_models.hpp"
@@ -35,5 +36,10 @@ class GoldenSource {
 // fails, or gives other outputs the second time; those of reference_flight().
 Result<MadeGolden> make_golden(const Case& the_case, GoldenSource& source,
                                VehicleModels& vehicle_models, const std::function<bool()>& stop);
+
+// The golden that attest's own reference gives for one configuration of the case, for a case that
+// has none in a file. `vehicle_model`: of a flight; else null. Errors: those of make_golden().
+Result<Golden> golden_by_reference(const Case& the_case, const RunConfiguration& configuration,
+                                   const VehicleModel* vehicle_model);
 
 }  // namespace attest

@@ -105,8 +105,17 @@ Document hunt_document(const HuntReport& report, HuntCases cases) {
     add_lines(findings[i], i < report.written.size() ? report.written[i] : HuntReport::Written(),
               cases, table.below);
   }
-  const bool has_files = std::ranges::any_of(
-      report.written, [](const auto& written) { return !written.case_file.empty(); });
+  const bool has_files = !report.suite.empty();
+  if (has_files) {
+    const std::string suite = "attest --suite " + shell_word(report.suite);
+    table.below.emplace_back(fmt::format("  run all: {} run --group hunt --port {}", suite,
+                                         shell_word(report.run.port)));
+    table.below.emplace_back(
+        fmt::format("  keep: write the `why` of the cases, then {} bless --group hunt --yes "
+                    "--reason \"found by "
+                    "hunt\"",
+                    suite));
+  }
   const bool has_cases = !std::ranges::all_of(findings, &HuntFinding::needs_others);
   if (cases == HuntCases::left_out && has_cases && !has_files) {
     table.below.emplace_back(

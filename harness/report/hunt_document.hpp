@@ -21,6 +21,7 @@ struct HuntReport {
     std::string case_file, trace_file, command;
   };
   std::vector<Written> written;
+  std::string suite;  // the folder with the case files; empty: none were written
 };
 
 enum class HuntCases : std::uint8_t { shown, left_out };

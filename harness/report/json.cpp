@@ -47,11 +47,13 @@ ordered_json results(const RunResult& run) {
   for (const VectorResult& result : run.results) {
     const nlohmann::json all = to_json(result);
     ordered_json entry;
-    for (const char* key :
-         {"id",       "profile", "group",           "name",       "rate",          "vehicle",
-          "plant",    "verdict", "reason",          "exact_only", "applies",       "by_golden",
-          "compared", "ticks",   "deviating_ticks", "first",      "worst",         "tightest",
-          "largest",  "metrics", "after",           "lacking",    "has_after_all", "silent"}) {
+    for (const char* key : {"id",        "profile",    "group",    "name",
+                            "rate",      "vehicle",    "plant",    "verdict",
+                            "reason",    "exact_only", "applies",  "by_golden",
+                            "no_golden", "compared",   "ticks",    "deviating_ticks",
+                            "first",     "worst",      "tightest", "largest",
+                            "metrics",   "after",      "lacking",  "has_after_all",
+                            "silent"}) {
       if (all.contains(key)) entry[key] = all[key];
     }
     out.push_back(std::move(entry));

@@ -113,6 +113,12 @@ std::string subject_of(const RunResult& run) {
     out += fmt::format("; the golden's values judged {}, because the reference has other bits here",
                        counted(static_cast<std::size_t>(by_golden), "vector"));
   }
+  const auto without = std::ranges::count_if(run.results, &VectorResult::no_golden);
+  if (without > 0) {
+    out += fmt::format("; the reference alone judged {}, because the suite has no golden of {}",
+                       counted(static_cast<std::size_t>(without), "vector"),
+                       without == 1 ? "it" : "them");
+  }
   return out;
 }
 

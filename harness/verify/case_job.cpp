@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/core/error_json.hpp"
+#include "harness/golden/make_golden.hpp"
 #include "harness/verify/evaluate.hpp"
 #include "harness/verify/verdict_json.hpp"
 
@@ -112,11 +113,15 @@ Result<VectorResult> CaseJob::repeated_alone(const Vector& vector, VectorResult 
 }
 
 Result<void> CaseJob::open_golden(const Vector& vector) {
-  if (golden_of_ == vector.the_case) return {};
-  auto golden = goldens_->open(*vector.the_case);
+  const bool is_made = judge_.by_reference && !goldens_->has(*vector.the_case);
+  if (golden_of_ == vector.the_case && !is_made) return {};
+  auto golden =
+      is_made ? golden_by_reference(*vector.the_case, vector.configuration, vehicle_model_.get())
+              : goldens_->open(*vector.the_case);
   if (!golden) return tl::unexpected(golden.error());
   golden_.emplace(*std::move(golden));
   golden_of_ = vector.the_case;
+  golden_is_made_ = is_made;
   return {};
 }
 
@@ -128,7 +133,9 @@ Result<VectorResult> CaseJob::judged(const Vector& vector) {
       vehicle_model_
           ? evaluate_flight(the_case, configuration, *vehicle_model_, *golden_, *host_, judge_)
           : evaluate_case(the_case, configuration.rate.motor_unit, *golden_, *host_, judge_);
-  if (result) add_last_words(*host_, *result);
+  if (!result) return result;
+  result->no_golden = golden_is_made_ && is_judged(result->verdict);
+  add_last_words(*host_, *result);
   return result;
 }
 

@@ -72,6 +72,7 @@ class CaseJob final : public PortJob<VectorResult> {
   int failed_alone_ = 0;                     // repetitions in a row that failed too
   std::shared_ptr<const Case> golden_of_;
   std::optional<Golden> golden_;
+  bool golden_is_made_ = false;  // for the vector, by the reference
 };
 
 // Judges a flight at recorded times.

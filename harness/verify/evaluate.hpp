@@ -30,6 +30,8 @@ struct JudgeOptions {
   // Topics that the port never publishes are not compared. The caller decides about them when all
   // vectors were judged (settle_silent_topics).
   bool leaves_out_silent = false;
+  // A case that has no golden is judged by the reference alone (VectorResult::no_golden).
+  bool by_reference = false;
 };
 
 // A result that names its vector, or the file of a recorded trace; the other members have their

@@ -90,6 +90,8 @@ struct VectorResult {
   // The reference has other bits on this machine than the golden, within the tolerances. The
   // golden's values decided.
   bool by_golden = false;
+  // The suite has no golden of the case. The reference alone decided.
+  bool no_golden = false;
   std::optional<Level> compared;  // the level at which outputs were compared; empty: they were not
   std::size_t ticks = 0;          // compared
   std::size_t deviating_ticks = 0;

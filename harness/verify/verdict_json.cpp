@@ -172,6 +172,7 @@ nlohmann::json to_json(const VectorResult& result) {
   if (result.exact_only) out["exact_only"] = true;
   if (!result.applies) out["applies"] = false;
   if (result.by_golden) out["by_golden"] = true;
+  if (result.no_golden) out["no_golden"] = true;
   if (result.compared) out["compared"] = name_of(*result.compared);
   if (result.first) out["first"] = deviation_to_json(*result.first);
   if (result.worst) out["worst"] = deviation_to_json(*result.worst);
@@ -215,6 +216,7 @@ Result<VectorResult> vector_result_from_json(const nlohmann::json& json) {
   out.exact_only = reader.has("exact_only") && reader.flag("exact_only");
   out.applies = !reader.has("applies") || reader.flag("applies");
   out.by_golden = reader.has("by_golden") && reader.flag("by_golden");
+  out.no_golden = reader.has("no_golden") && reader.flag("no_golden");
   if (reader.has("compared")) {
     const auto level = parse_level(reader.text("compared"));
     if (!level) reader.wrong(level.error().message);

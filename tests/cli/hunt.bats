@@ -58,7 +58,20 @@ load common
   [ "$status" -eq 1 ]
   run "$ATTEST" replay "${trace[0]}" --profile v1.15.4
   [ "$status" -eq 0 ]
-  "$ATTEST" --suite ours bless --group hunt --yes --reason "found by hunt" >/dev/null
+  local commands found_port=fault:cascade-m-not-canonical
+  grep -qF "  run all: attest --suite ours run --group hunt --port $found_port" found.txt
+  run "$ATTEST" --suite ours run --group hunt --port $found_port --json report.json
+  [ "$status" -eq 1 ]
+  has "differs from the reference"
+  has "; the reference alone judged 1 vector, because the suite has no golden of it"
+  grep -q '"no_golden": true' report.json
+  run "$ATTEST" --suite ours run --filter '*/attitude/roll_30@250hz' --profile v1.16.0
+  [ "$status" -eq 0 ]  # a case of the base
+  has "conformance: partial: "
+  commands=$(sed -n 's/^ *keep: write the `why` of the cases, then attest //p' found.txt)
+  eval "\"$ATTEST\" $commands" >/dev/null
+  run "$ATTEST" --suite ours run --group hunt
+  lacks "no golden"
   run "$ATTEST" --suite ours run --group hunt --port fault:cascade-m-not-canonical --no-diagnose
   [ "$status" -eq 1 ]
   run "$ATTEST" --suite ours run --group hunt
