@@ -100,13 +100,8 @@ class PureRateLaw {
       up.unallocated_torque[i] = given.positive[i] != 0 ? 1.0f : 0.0f;
       down.unallocated_torque[i] = given.negative[i] != 0 ? -1.0f : 0.0f;
     }
-    Saturation flags = rate_stages_.saturation(up);
-    const Saturation of_down = rate_stages_.saturation(down);
-    for (std::size_t i = 0; i < 3; ++i) {
-      flags.positive[i] = flags.positive[i] || of_down.positive[i];
-      flags.negative[i] = flags.negative[i] || of_down.negative[i];
-    }
-    return flags;
+    const Saturation of_up = rate_stages_.saturation(up);
+    return rate_stages_.either(of_up, rate_stages_.saturation(down));
   }
 
   [[no_unique_address]] decltype(Law::step) stages_;

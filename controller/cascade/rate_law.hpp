@@ -51,6 +51,15 @@ struct RateStages {
     return flags;
   }
 
+  // The flags of two samples, of which each has one direction.
+  ATTEST_INLINE static Saturation either(Saturation up, const Saturation& down) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      up.positive[i] = up.positive[i] || down.positive[i];
+      up.negative[i] = up.negative[i] || down.negative[i];
+    }
+    return up;
+  }
+
   ATTEST_INLINE static Vector error(const Vector& rates_sp, const Vector& rates) {
     return rates_sp - rates;
   }

@@ -36,8 +36,21 @@ void use_gates(FaultyLaw& law, const Gates& gates) {
   };
 }
 
-void gate_on(FaultyLaw& law, bool (*may)(float thrust, const MotorLimits& limits)) {
-  law.rate.may_integrate = may;
+// Changes what the first gate sees. Change is void(float& thrust, MotorLimits&).
+template <typename Change>
+void change_gate(FaultyLaw& law, Change change) {
+  law.rate.may_integrate = [change, then = law.rate.may_integrate](float thrust,
+                                                                   MotorLimits limits) {
+    change(thrust, limits);
+    return then(thrust, limits);
+  };
+}
+
+// The first gate is open at a thrust at which `open` is true.
+void open_gate(FaultyLaw& law, bool (*open)(float thrust)) {
+  change_gate(law, [open](float& thrust, MotorLimits&) {
+    if (open(thrust)) thrust = 1;
+  });
 }
 
 using Flags = decltype(attest_inputs::multirotor_motor_limits);
@@ -50,36 +63,28 @@ void change_flags(FaultyLaw& law, Change change) {
 const Fault anti_windup_list[] = {
     {"gate-takeoff-dropped", "anti_windup", Stage::gate, "integrates at any thrust",
      "thrust below 0.2", "a condition dropped",
-     [](FaultyLaw& law) {
-       gate_on(law, [](float, const MotorLimits& l) { return !l.lower && !l.upper; });
-     }},
+     [](FaultyLaw& law) { open_gate(law, [](float) { return true; }); }},
     {"gate-takeoff-at-0", "anti_windup", Stage::gate, "integrates above zero thrust",
      "thrust between 0 and 0.2", "wrong branch threshold",
-     [](FaultyLaw& law) {
-       gate_on(law, [](float t, const MotorLimits& l) { return t > 0 && !l.lower && !l.upper; });
-     }},
+     [](FaultyLaw& law) { open_gate(law, [](float thrust) { return thrust > 0; }); }},
     {"gate-takeoff-not-strict", "anti_windup", Stage::gate, "integrates at a thrust of 0.2",
      "thrust of exactly 0.2", "a condition made non-strict",
-     [](FaultyLaw& law) {
-       gate_on(law, [](float t, const MotorLimits& l) {
-         return t >= takeoff_thrust && !l.lower && !l.upper;
-       });
-     }},
+     [](FaultyLaw& law) { open_gate(law, [](float thrust) { return thrust == takeoff_thrust; }); }},
     {"gate-lower-dropped", "anti_windup", Stage::gate, "integrates at the lower motor limit",
      "the lower limit", "a condition dropped",
      [](FaultyLaw& law) {
-       gate_on(law, [](float t, const MotorLimits& l) { return t > takeoff_thrust && !l.upper; });
+       change_gate(law, [](float&, MotorLimits& limits) { limits.lower = false; });
      }},
     {"gate-upper-dropped", "anti_windup", Stage::gate, "integrates at the upper motor limit",
      "the upper limit", "a condition dropped",
      [](FaultyLaw& law) {
-       gate_on(law, [](float t, const MotorLimits& l) { return t > takeoff_thrust && !l.lower; });
+       change_gate(law, [](float&, MotorLimits& limits) { limits.upper = false; });
      }},
     {"gate-both-needed", "anti_windup", Stage::gate, "freezes only where both motor limits are set",
      "one of the limits", "a condition changed",
      [](FaultyLaw& law) {
-       gate_on(law, [](float t, const MotorLimits& l) {
-         return t > takeoff_thrust && !(l.lower && l.upper);
+       change_gate(law, [](float&, MotorLimits& limits) {
+         limits.lower = limits.upper = limits.lower && limits.upper;
        });
      }},
     {"gate-yaw-dropped",
@@ -94,9 +99,8 @@ const Fault anti_windup_list[] = {
     {"gate-yaw-for-all", "anti_windup", Stage::gate, "freezes all axes at the yaw limit",
      "the yaw limit", "wrong axis",
      [](FaultyLaw& law) {
-       gate_on(law, [](float t, const MotorLimits& l) {
-         return t > takeoff_thrust && !l.lower && !l.upper && !l.yaw;
-       });
+       change_gate(law,
+                   [](float&, MotorLimits& limits) { limits.lower = limits.lower || limits.yaw; });
      }},
     {"gate-roll-by-yaw", "anti_windup", Stage::gate, "freezes roll at the yaw limit, not yaw",
      "the yaw limit", "wrong axis",

@@ -16,11 +16,12 @@ using cascade::Saturation;
 // Changes the saturation flags that the law computes from a sample.
 template <typename Change>
 void change_saturation(FaultyLaw& law, Change change) {
-  law.rate_unit.rate.saturation = [change](const Allocation& status) mutable {
-    Saturation flags = RateLaw::saturation(status);
-    change(flags, status);
-    return flags;
-  };
+  law.rate_unit.rate.saturation =
+      [change, then = law.rate_unit.rate.saturation](const Allocation& status) mutable {
+        Saturation flags = then(status);
+        change(flags, status);
+        return flags;
+      };
 }
 
 // Replaces the error that an axis integrates. Error is Scalar(error, positive, negative), with the
@@ -43,8 +44,12 @@ Saturation flags_beyond(const Allocation& status, float threshold) {
 // Not only the integral but also P uses the error that the saturation flags limit.
 void saturate_p(FaultyLaw& law) {
   auto now = std::make_shared<Saturation>();
+  auto& stages = law.rate_unit.rate;
   change_saturation(law, [now](Saturation& flags, const Allocation&) { *now = flags; });
-  law.rate_unit.rate.proportional = [now](Vector error, const TorqueGains& gains) {
+  stages.either = [now, then = stages.either](const Saturation& up, const Saturation& down) {
+    return *now = then(up, down);
+  };
+  stages.proportional = [now](Vector error, const TorqueGains& gains) {
     for (int i = 0; i < 3; ++i) {
       const auto axis = static_cast<std::size_t>(i);
       error[i] = RateLaw::unsaturated(error[i], now->positive[axis], now->negative[axis]);
@@ -58,9 +63,14 @@ void change_integral_limit(FaultyLaw& law, Limit limit) {
   law.rate_unit.rate.limited = limit;
 }
 
-template <typename May>
-void change_may_integrate(FaultyLaw& law, May may) {
-  law.rate_unit.rate.may_integrate = may;
+// Changes the two flags that stop the integral on the ground. Change is void(landed, maybe).
+template <typename Change>
+void change_landed(FaultyLaw& law, Change change) {
+  law.rate_unit.rate.may_integrate = [change, then = law.rate_unit.rate.may_integrate](bool landed,
+                                                                                       bool maybe) {
+    change(landed, maybe);
+    return then(landed, maybe);
+  };
 }
 
 // Also resets the integral while the newest vehicle_land_detected has landed or maybe_landed set,
@@ -245,18 +255,20 @@ const Fault integral_list[] = {
      }},
     {"cascade-integral-on-the-ground", "landed", Stage::gate, "integrates on the ground",
      "an error while landed", "a missing condition",
-     [](FaultyLaw& law) { change_may_integrate(law, [](bool, bool) { return true; }); }},
+     [](FaultyLaw& law) {
+       change_landed(law, [](bool& landed, bool& maybe) { landed = maybe = false; });
+     }},
     {"cascade-maybe-landed-ignored", "landed", Stage::gate, "does not read maybe_landed",
      "maybe_landed alone", "a missing condition",
-     [](FaultyLaw& law) { change_may_integrate(law, [](bool landed, bool) { return !landed; }); }},
+     [](FaultyLaw& law) { change_landed(law, [](bool&, bool& maybe) { maybe = false; }); }},
     {"cascade-landed-ignored", "landed", Stage::gate, "does not read landed", "landed alone",
      "a missing condition",
-     [](FaultyLaw& law) { change_may_integrate(law, [](bool, bool maybe) { return !maybe; }); }},
+     [](FaultyLaw& law) { change_landed(law, [](bool& landed, bool&) { landed = false; }); }},
     {"cascade-landed-needs-both", "landed", Stage::gate,
      "freezes the integral only if landed and maybe_landed are set", "one of the flags",
      "and for or",
      [](FaultyLaw& law) {
-       change_may_integrate(law, [](bool landed, bool maybe) { return !landed || !maybe; });
+       change_landed(law, [](bool& landed, bool& maybe) { landed = maybe = landed && maybe; });
      }},
     {"cascade-landed-resets", "landed", Stage::gate,
      "sets the integral to 0 on the ground instead of freezing it", "a landing with an integral",
@@ -288,12 +300,11 @@ const Fault integral_list[] = {
      "an error while disarmed and not landed", "a misplaced reset",
      [](FaultyLaw& law) {
        auto resets = std::make_shared<bool>(false);
-       law.rate_unit.step.resets_integral = [resets](const cascade::RateTopics& topics) {
-         return *resets = RateStepStages::Law::resets_integral(topics);
-       };
-       change_may_integrate(law, [resets](bool landed, bool maybe) {
-         return !*resets && RateLaw::may_integrate(landed, maybe);
-       });
+       law.rate_unit.step.resets_integral =
+           [resets, then = law.rate_unit.step.resets_integral](const cascade::RateTopics& topics) {
+             return *resets = then(topics);
+           };
+       change_landed(law, [resets](bool& landed, bool&) { landed = landed || *resets; });
      }},
     {"cascade-fixed-wing-integrates", "landed", Stage::arming,
      "keeps the integral of a VTOL that flies as fixed wing", "a vehicle that is no rotary wing",

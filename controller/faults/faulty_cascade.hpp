@@ -109,6 +109,8 @@ struct TorqueStages {
   using Law = cascade::RateStages<Scalar>;
   using LawGains = cascade::RateGains<Scalar>;
   std::function<cascade::Saturation(const Law::Allocation&)> saturation = Law::saturation;
+  std::function<cascade::Saturation(const cascade::Saturation&, const cascade::Saturation&)>
+      either = Law::either;
   std::function<Vector(const Vector&, const Vector&)> error = Law::error;
   std::function<Vector(const Vector&, const LawGains&)> proportional = Law::proportional;
   std::function<Vector(const Vector&, const LawGains&)> derivative = Law::derivative;

@@ -21,27 +21,26 @@ using V = const Vector&;
 
 const Fault rate_list[] = {
     {"p-missing", "rates", Stage::p, "has no P term", "a rate error", "a missing term",
-     [](FaultyLaw& law) { change_control(law, [](V, V d, V i, V ff) { return d + i + ff; }); }},
+     [](FaultyLaw& law) { change_terms(law, [](ControlTerms& t) { t.p.setZero(); }); }},
     {"d-missing", "rates", Stage::d, "has no D term", "rates that change", "a missing term",
-     [](FaultyLaw& law) { change_control(law, [](V p, V, V i, V ff) { return p + i + ff; }); }},
+     [](FaultyLaw& law) { change_terms(law, [](ControlTerms& t) { t.d.setZero(); }); }},
     {"i-missing", "rates", Stage::i, "does not add the integral", "an error that lasts",
      "a missing term",
-     [](FaultyLaw& law) { change_control(law, [](V p, V d, V, V ff) { return p + d + ff; }); }},
+     [](FaultyLaw& law) { change_terms(law, [](ControlTerms& t) { t.i.setZero(); }); }},
     {"ff-missing", "rates", Stage::ff, "has no rate feed-forward", "a feed-forward gain",
      "missing feed-forward",
-     [](FaultyLaw& law) { change_control(law, [](V p, V d, V i, V) { return p + d + i; }); }},
+     [](FaultyLaw& law) { change_terms(law, [](ControlTerms& t) { t.ff.setZero(); }); }},
     {"d-subtracted", "rates", Stage::d, "subtracts the D term", "rates that change", "a sign",
-     [](FaultyLaw& law) {
-       change_control(law, [](V p, V d, V i, V ff) { return p - d + i + ff; });
-     }},
+     [](FaultyLaw& law) { change_terms(law, [](ControlTerms& t) { t.d *= -1; }); }},
     {"i-subtracted", "rates", Stage::i, "subtracts the integral", "an error that lasts", "a sign",
-     [](FaultyLaw& law) {
-       change_control(law, [](V p, V d, V i, V ff) { return p + d - i + ff; });
-     }},
+     [](FaultyLaw& law) { change_terms(law, [](ControlTerms& t) { t.i *= -1; }); }},
     {"d-and-i-subtracted", "rates", Stage::d, "subtracts the D term and the integral",
      "rates that change", "a sign",
      [](FaultyLaw& law) {
-       change_control(law, [](V p, V d, V i, V ff) { return p - d - i + ff; });
+       change_terms(law, [](ControlTerms& t) {
+         t.d *= -1;
+         t.i *= -1;
+       });
      }},
     {"error-reversed", "rates", Stage::p, "computes rates minus setpoint", "a rate error", "a sign",
      [](FaultyLaw& law) {
@@ -186,9 +185,9 @@ const Fault rate_list[] = {
     {"controls-limited", "rates", Stage::output, "limits the controls to 1", "a control beyond 1",
      "misplaced clamp",
      [](FaultyLaw& law) {
-       change_control(law, [](V p, V d, V i, V ff) {
-         return Vector(RateStages::Law::control(p, d, i, ff).cwiseMin(1).cwiseMax(-1));
-       });
+       law.rate.control = [then = law.rate.control](V p, V d, V i, V ff) {
+         return Vector(then(p, d, i, ff).cwiseMin(1).cwiseMax(-1));
+       };
      }},
     {"roll-pitch-exchanged", "rates", Stage::output, "exchanges roll and pitch",
      "roll and pitch that differ", "wrong axis",

@@ -32,11 +32,19 @@ inline std::shared_ptr<Seen> watch(FaultyLaw& law) {
   return seen;
 }
 
-// Replaces the sum of the terms.
-template <typename Sum>
-void change_control(FaultyLaw& law, Sum sum) {
-  law.rate.control = [sum](const Vector& p, const Vector& d, const Vector& i, const Vector& ff) {
-    return Vector(sum(p, d, i, ff));
+// The terms of the control.
+struct ControlTerms {
+  Vector p, d, i, ff;
+};
+
+// Changes the terms before they are added. Change is void(ControlTerms&).
+template <typename Change>
+void change_terms(FaultyLaw& law, Change change) {
+  law.rate.control = [change, then = law.rate.control](const Vector& p, const Vector& d,
+                                                       const Vector& i, const Vector& ff) {
+    ControlTerms terms{p, d, i, ff};
+    change(terms);
+    return then(terms.p, terms.d, terms.i, terms.ff);
   };
 }
 

@@ -29,22 +29,21 @@ const Fault tpa_list[] = {
      "a misplaced factor",
      [](FaultyLaw& law) {
        auto seen = watch(law);
-       change_control(law,
-                      [seen](V p, V d, V i, V ff) { return p + d * seen->attenuation + i + ff; });
+       change_terms(law, [seen](ControlTerms& t) { t.d *= seen->attenuation; });
      }},
     {"tpa-on-ff", "tpa", Stage::tpa, "attenuates the feed-forward too", "thrust above the break",
      "a misplaced factor",
      [](FaultyLaw& law) {
        auto seen = watch(law);
-       change_control(law,
-                      [seen](V p, V d, V i, V ff) { return p + d + i + ff * seen->attenuation; });
+       change_terms(law, [seen](ControlTerms& t) { t.ff *= seen->attenuation; });
      }},
     {"tpa-on-all", "tpa", Stage::tpa, "attenuates the whole control", "thrust above the break",
      "a misplaced factor",
      [](FaultyLaw& law) {
        auto seen = watch(law);
-       change_control(law,
-                      [seen](V p, V d, V i, V ff) { return p + (d + i + ff) * seen->attenuation; });
+       change_terms(law, [seen](ControlTerms& t) {
+         for (Vector* term : {&t.d, &t.i, &t.ff}) *term *= seen->attenuation;
+       });
      }},
     {"tpa-on-growth", "tpa", Stage::tpa, "integrates the attenuated error",
      "thrust above the break", "a misplaced factor",

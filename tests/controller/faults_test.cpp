@@ -83,6 +83,23 @@ TEST(FaultyController, InstancesShareNothing) {
   }
 }
 
+// Each changes the stage that it finds, so both act, also in one stage.
+TEST(FaultyController, TwoFaultsOfOneStageActTogether) {
+  const auto may_integrate = [](std::initializer_list<const char*> ids, float thrust, bool upper) {
+    std::vector<const Fault*> faults;
+    for (const char* id : ids) faults.push_back(find_fault(id));
+    return law_with(faults).rate.may_integrate(thrust, {.lower = false, .upper = upper});
+  };
+  const auto both = {"gate-takeoff-dropped", "gate-upper-dropped"};
+  EXPECT_FALSE(may_integrate({"gate-takeoff-dropped"}, 0.1f, true));
+  EXPECT_FALSE(may_integrate({"gate-upper-dropped"}, 0.1f, true));
+  EXPECT_TRUE(may_integrate(both, 0.1f, true));
+
+  const Fault* const signs[] = {find_fault("i-subtracted"), find_fault("d-missing")};
+  const Vector one = Vector::Ones(), two = 2 * one, three = 3 * one, four = 4 * one;
+  EXPECT_EQ(law_with(signs).rate.control(one, two, three, four), Vector(one - three + four));
+}
+
 TEST(FaultyController, TwoFaultsActTogether) {
   const Fault* const both[] = {find_fault("thrust-negated"), find_fault("gear-missing")};
   FaultyController controller(Profile::px4_v1_5_5, both);
