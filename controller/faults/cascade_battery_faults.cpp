@@ -93,6 +93,34 @@ const Fault battery_list[] = {
          return sample.connected != 0 ? sample.scale : before;
        });
      }},
+    {"cascade-battery-first-scale", "battery", Stage::scaling,
+     "keeps the first scale that it receives", "a scale that changes", "a latch",
+     [](FaultyLaw& law) {
+       change_battery_scale(law, [](Scalar before, const Battery& sample) {
+         return before > 0 ? before : RateStepLaw::battery_scale(before, sample);
+       });
+     }},
+    {"cascade-battery-not-below-1", "battery", Stage::scaling, "ignores scales below 1",
+     "a scale of 0.9", "a helpful extra",
+     [](FaultyLaw& law) {
+       change_battery_scale(law, [](Scalar before, const Battery& sample) {
+         return sample.scale < 1 ? before : RateStepLaw::battery_scale(before, sample);
+       });
+     }},
+    {"cascade-battery-finite-only", "robustness", Stage::scaling, "ignores an infinite scale",
+     "a scale of infinity", "a helpful extra",
+     [](FaultyLaw& law) {
+       change_battery_scale(law, [](Scalar before, const Battery& sample) {
+         return std::isfinite(sample.scale) ? RateStepLaw::battery_scale(before, sample) : before;
+       });
+     }},
+    {"cascade-battery-enable-is-1", "battery", Stage::parameters,
+     "scales for MC_BAT_SCALE_EN of 1 only", "MC_BAT_SCALE_EN of 2", "flag comparison",
+     [](FaultyLaw& law) {
+       change_gains(law.rate_unit, [](RateUnitGains& gains, const CascadeParameters& p) {
+         gains.battery_scaling = p.mc_bat_scale_en == 1;
+       });
+     }},
     {"cascade-battery-sample-lost", "battery", Stage::latching,
      "loses a battery sample that arrives while scaling is off", "MC_BAT_SCALE_EN set in flight",
      "a missing state",
@@ -105,6 +133,21 @@ const Fault battery_list[] = {
     {"cascade-torque-not-guarded", "robustness", Stage::guard,
      "publishes a torque that is not finite", "one NaN of the gyro", "a missing guard",
      [](FaultyLaw& law) { law.rate_unit.step.guarded = [](Scalar torque) { return torque; }; }},
+    {"cascade-torque-guard-nan-only", "robustness", Stage::guard, "publishes an infinite torque",
+     "an infinite rate", "isnan for isfinite",
+     [](FaultyLaw& law) {
+       law.rate_unit.step.guarded = [](Scalar torque) { return std::isnan(torque) ? 0 : torque; };
+     }},
+    {"cascade-torque-held", "robustness", Stage::guard,
+     "publishes the last torque in place of one that is not finite", "one NaN of the gyro",
+     "another fallback",
+     [](FaultyLaw& law) {
+       law.rate_unit.step.guarded = [held = Vector(Vector::Zero()),
+                                     axis = 2](Scalar torque) mutable {
+         axis = (axis + 1) % 3;  // the law guards the axes in their order
+         return held[axis] = std::isfinite(torque) ? torque : held[axis];
+       };
+     }},
     {"cascade-thrust-guarded", "robustness", Stage::guard,
      "publishes 0 for a thrust that is not finite", "a thrust of NaN", "a guard too many",
      [](FaultyLaw& law) {

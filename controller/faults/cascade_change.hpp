@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "controller/faults/faulty_law.hpp"
@@ -111,6 +112,17 @@ void start_with(Unit& unit, std::uint32_t topic, Set set) {
     if (!std::exchange(is_first, false) || (in.updated & topic) != 0) return;
     in.updated |= topic;
     set(in);
+  });
+}
+
+// Uses each sample of a topic one step late. `member` has the topic, and `bit` shows a new sample.
+template <auto member, std::uint32_t bit, typename Unit>
+void delay(Unit& unit) {
+  using Inputs = typename Unit::Inputs;
+  using Sample = std::remove_cvref_t<decltype(std::declval<Inputs>().*member)>;
+  also_before(unit, [sample = Sample{}, arrived = std::uint32_t{0}](Inputs& in) mutable {
+    std::swap(sample, in.*member);
+    in.updated = (in.updated & ~bit) | std::exchange(arrived, in.updated & bit);
   });
 }
 

@@ -11,11 +11,14 @@ namespace {
 
 using RateLaw = TorqueStages::Law;
 
-// Replaces the sum of the terms. Sum is Vector(p, i, d, ff).
-template <typename Sum>
-void change_torque(FaultyLaw& law, Sum sum) {
-  law.rate_unit.rate.torque = [sum](const Vector& p, const Vector& i, const Vector& d,
-                                    const Vector& ff) { return Vector(sum(p, i, d, ff)); };
+// Changes the terms of the torque before they are added. Change is void(p, i, d, ff).
+template <typename Change>
+void change_terms(FaultyLaw& law, Change change) {
+  law.rate_unit.rate.torque = [change, then = law.rate_unit.rate.torque](Vector p, Vector i,
+                                                                         Vector d, Vector ff) {
+    change(p, i, d, ff);
+    return then(p, i, d, ff);
+  };
 }
 
 template <typename Change>
@@ -29,9 +32,9 @@ Vector k_of(const CascadeParameters& p) {
   return cascade::each<Scalar>(p.mc_rollrate_k, p.mc_pitchrate_k, p.mc_yawrate_k);
 }
 
-// D acts on the change of `value` since the previous step. Value is Vector(rates_sp, rates).
+// Watches `value` in this step and in the one before, and dt. Value is Vector(rates_sp, rates).
 template <typename Value>
-void differentiate(FaultyLaw& law, Value value) {
+auto watch_change(FaultyLaw& law, Value value) {
   struct Seen {
     Vector now = Vector::Zero(), last = Vector::Zero();
     float dt_s = 0.02f;
@@ -44,8 +47,22 @@ void differentiate(FaultyLaw& law, Value value) {
     seen->last = std::exchange(seen->now, value(rates_sp, rates));
     return RateLaw::error(rates_sp, rates);
   };
-  law.rate_unit.rate.derivative = [seen](const Vector&, const TorqueGains& gains) {
+  return seen;
+}
+
+// D acts on the change of `value` since the previous step.
+template <typename Value>
+void differentiate(FaultyLaw& law, Value value) {
+  law.rate_unit.rate.derivative = [seen = watch_change(law, value)](V, const TorqueGains& gains) {
     return RateLaw::derivative(Vector((seen->now - seen->last) / seen->dt_s), gains);
+  };
+}
+
+// The integral grows as if each step took `dt_s`.
+void integrate_with(FaultyLaw& law, float dt_s) {
+  law.rate_unit.rate.integrated = [dt_s](Scalar integral, Scalar factor, Scalar gain, Scalar error,
+                                         Scalar) {
+    return RateLaw::integrated(integral, factor, gain, error, dt_s);
   };
 }
 
@@ -70,16 +87,48 @@ const Fault torque_list[] = {
     {"cascade-d-reversed", "rates", Stage::d, "adds D instead of subtracting it",
      "any acceleration", "a sign",
      [](FaultyLaw& law) {
-       change_torque(law, [](V p, V i, V d, V ff) { return Vector(((p + i) + d) + ff); });
+       change_terms(law, [](Vector&, Vector&, Vector& d, Vector&) { d *= -1; });
      }},
     {"cascade-d-missing", "rates", Stage::d, "has no D", "any acceleration", "a missing term",
      [](FaultyLaw& law) {
-       change_torque(law, [](V p, V i, V, V ff) { return Vector((p + i) + ff); });
+       change_terms(law, [](Vector&, Vector&, Vector& d, Vector&) { d.setZero(); });
+     }},
+    {"cascade-p-missing", "rates", Stage::p, "has no P", "any rate error", "a missing term",
+     [](FaultyLaw& law) {
+       change_terms(law, [](Vector& p, Vector&, Vector&, Vector&) { p.setZero(); });
+     }},
+    {"cascade-d-of-gyro-without-dt", "rates", Stage::d,
+     "takes D from the difference of two gyro samples, and does not divide it by dt",
+     "any acceleration", "a missing factor",
+     [](FaultyLaw& law) {
+       const auto rates = [](V, V now) { return Vector(now); };
+       law.rate_unit.rate.derivative = [seen = watch_change(law, rates)](V,
+                                                                         const TorqueGains& gains) {
+         return RateLaw::derivative(Vector(seen->now - seen->last), gains);
+       };
+     }},
+    {"cascade-d-filtered", "rates", Stage::d, "low-passes D", "an acceleration that changes",
+     "a helpful extra",
+     [](FaultyLaw& law) {
+       law.rate_unit.rate.derivative = [filtered = Vector(Vector::Zero())](
+                                           V acceleration, const TorqueGains& gains) mutable {
+         filtered += 0.5f * (RateLaw::derivative(acceleration, gains) - filtered);
+         return filtered;
+       };
+     }},
+    {"cascade-i-without-dt", "rates", Stage::i, "does not multiply by dt", "an error that lasts",
+     "a missing factor", [](FaultyLaw& law) { integrate_with(law, 1); }},
+    {"cascade-i-fixed-dt", "rates", Stage::i, "integrates as if every step took 4 ms",
+     "any rate except 250 Hz", "a fixed rate", [](FaultyLaw& law) { integrate_with(law, 0.004f); }},
+    {"cascade-i-reversed", "rates", Stage::i, "subtracts the integral", "an error that lasts",
+     "a sign",
+     [](FaultyLaw& law) {
+       change_terms(law, [](Vector&, Vector& i, Vector&, Vector&) { i *= -1; });
      }},
     {"cascade-i-missing", "rates", Stage::i, "does not add the integral", "an error that lasts",
      "a missing term",
      [](FaultyLaw& law) {
-       change_torque(law, [](V p, V, V d, V ff) { return Vector((p - d) + ff); });
+       change_terms(law, [](Vector&, Vector& i, Vector&, Vector&) { i.setZero(); });
      }},
     {"cascade-i-never", "rates", Stage::i, "has no integral: it stays 0", "an error that lasts",
      "a missing term",
@@ -87,17 +136,8 @@ const Fault torque_list[] = {
     {"cascade-rates-setpoint-late", "rates", Stage::latching,
      "uses the rates setpoint one step late", "a setpoint that changes", "one-tick delay",
      [](FaultyLaw& law) {
-       struct Waiting {
-         decltype(RateIn::vehicle_rates_setpoint) sample = {};
-         std::uint32_t bit = 0;
-       };
-       also_before(law.rate_unit, [waiting = Waiting()](RateIn& in) mutable {
-         constexpr std::uint32_t topic = ATTEST_RATE_UPDATED_VEHICLE_RATES_SETPOINT;
-         const Waiting arrived{in.vehicle_rates_setpoint, in.updated & topic};
-         in.vehicle_rates_setpoint = waiting.sample;
-         in.updated = (in.updated & ~topic) | waiting.bit;
-         waiting = arrived;
-       });
+       delay<&RateIn::vehicle_rates_setpoint, ATTEST_RATE_UPDATED_VEHICLE_RATES_SETPOINT>(
+           law.rate_unit);
      }},
     {"cascade-i-of-this-step", "rates", Stage::i, "adds the integral after this step's update",
      "any error", "steps exchanged",
@@ -107,12 +147,12 @@ const Fault torque_list[] = {
     {"cascade-ff-missing", "rates", Stage::ff, "has no feed-forward", "a feed-forward gain",
      "a missing term",
      [](FaultyLaw& law) {
-       change_torque(law, [](V p, V i, V d, V) { return Vector((p + i) - d); });
+       change_terms(law, [](Vector&, Vector&, Vector&, Vector& ff) { ff.setZero(); });
      }},
     {"cascade-ff-reversed", "rates", Stage::ff, "subtracts the feed-forward", "a feed-forward gain",
      "a sign",
      [](FaultyLaw& law) {
-       change_torque(law, [](V p, V i, V d, V ff) { return Vector(((p + i) - d) - ff); });
+       change_terms(law, [](Vector&, Vector&, Vector&, Vector& ff) { ff *= -1; });
      }},
     {"cascade-ff-with-k", "rates", Stage::ff, "multiplies the feed-forward by K, too",
      "a feed-forward gain and a K other than 1", "a misplaced factor",
@@ -130,6 +170,16 @@ const Fault torque_list[] = {
        };
        law.rate_unit.rate.feed_forward = [error](V, const TorqueGains& gains) {
          return RateLaw::feed_forward(*error, gains);
+       };
+     }},
+    {"cascade-ff-of-change", "rates", Stage::ff,
+     "feeds the change of the setpoint forward, as v1.3.4 does", "a feed-forward gain",
+     "another version of the law",
+     [](FaultyLaw& law) {
+       const auto setpoint = [](V sp, V) { return Vector(sp); };
+       law.rate_unit.rate.feed_forward = [seen = watch_change(law, setpoint)](
+                                             V, const TorqueGains& gains) {
+         return RateLaw::feed_forward(Vector((seen->now - seen->last) / seen->dt_s), gains);
        };
      }},
     {"cascade-k-on-p-only", "rates", Stage::parameters, "multiplies P alone by K",
@@ -195,9 +245,9 @@ const Fault torque_list[] = {
     {"cascade-torque-clamped", "rates", Stage::output, "clamps the torque to -1 .. 1",
      "a large error", "a helpful extra",
      [](FaultyLaw& law) {
-       change_torque(law, [](V p, V i, V d, V ff) {
-         return Vector((((p + i) - d) + ff).cwiseMax(-1.0f).cwiseMin(1.0f));
-       });
+       law.rate_unit.rate.torque = [then = law.rate_unit.rate.torque](V p, V i, V d, V ff) {
+         return Vector(then(p, i, d, ff).cwiseMax(-1.0f).cwiseMin(1.0f));
+       };
      }},
     {"cascade-rate-thrust-z-only", "rates", Stage::output,
      "publishes the z component of the thrust only", "a setpoint with thrust along x or y",

@@ -76,6 +76,17 @@ const Fault acro_list[] = {
      [](FaultyLaw& law) {
        change_acro_input(law, [](AcroSticks& sticks, AcroGains&) { sticks.pitch = -sticks.pitch; });
      }},
+    {"cascade-acro-roll-reversed", "acro", Stage::sticks, "rolls left with the stick right",
+     "the roll stick", "a sign",
+     [](FaultyLaw& law) {
+       change_acro_input(law, [](AcroSticks& sticks, AcroGains&) { sticks.roll = -sticks.roll; });
+     }},
+    {"cascade-acro-sticks-exchanged", "acro", Stage::sticks,
+     "exchanges the sticks of roll and pitch", "sticks that differ", "wrong axis",
+     [](FaultyLaw& law) {
+       change_acro_input(
+           law, [](AcroSticks& sticks, AcroGains&) { std::swap(sticks.roll, sticks.pitch); });
+     }},
     {"cascade-acro-yaw-reversed", "acro", Stage::sticks, "yaws left with the stick right",
      "the yaw stick", "a sign",
      [](FaultyLaw& law) {

@@ -61,6 +61,20 @@ float of_float_clock(std::uint64_t now_us, std::uint64_t last_us) {
   return (static_cast<float>(now_us) - static_cast<float>(last_us)) * 1e-6f;
 }
 
+// The difference of two clocks that count whole milliseconds.
+float of_clock_in_ms(std::uint64_t now_us, std::uint64_t last_us) {
+  return static_cast<float>(now_us / 1000 - last_us / 1000) * 1e-3f;
+}
+
+float milli_for_micro(std::uint64_t now_us, std::uint64_t last_us) {
+  return static_cast<float>(now_us - last_us) * 1e-3f;
+}
+
+// The first step has the shortest dt.
+float none_at_first(std::uint64_t now_us, std::uint64_t last_us) {
+  return last_us == 0 ? 0 : seconds_between(now_us, last_us);
+}
+
 float four_ms(std::uint64_t, std::uint64_t) { return 0.004f; }
 
 // The time that the previous step measured; 20 ms in the first step.
@@ -145,6 +159,18 @@ const Fault timing_list[] = {
      [](FaultyLaw& law) { measure_attitude(law, difference_as<std::uint32_t>); }},
     {"cascade-attitude-dt-filtered", "timing", Stage::timing, "low-passes dt of the attitude unit",
      "jitter", "a helpful extra", [](FaultyLaw& law) { measure_attitude(law, filtered()); }},
+    {"cascade-attitude-dt-milli-for-micro", "timing", Stage::timing,
+     "takes the times of the attitude unit as milliseconds", "rates above 50 Hz", "a wrong unit",
+     [](FaultyLaw& law) { measure_attitude(law, milli_for_micro); }},
+    {"cascade-attitude-clock-in-ms", "timing", Stage::timing,
+     "holds timestamps of the attitude unit in whole milliseconds", "333 Hz, or jitter",
+     "integer division", [](FaultyLaw& law) { measure_attitude(law, of_clock_in_ms); }},
+    {"cascade-attitude-clock-in-int32", "timing", Stage::timing,
+     "holds timestamps of the attitude unit in 32 signed bits", "timestamps across 2^31 us",
+     "a narrow type", [](FaultyLaw& law) { measure_attitude(law, difference_as<std::int32_t>); }},
+    {"cascade-attitude-dt-first-is-minimum", "timing", Stage::timing,
+     "uses the smallest dt in the first step of the attitude unit", "the first step",
+     "initial state", [](FaultyLaw& law) { measure_attitude(law, none_at_first); }},
     {"cascade-rate-dt-from-2-ms", "timing", Stage::timing,
      "limits dt of the rate unit to 2 ms or more, as the older law", "rates above 500 Hz",
      "wrong clamp",
@@ -214,6 +240,18 @@ const Fault timing_list[] = {
      [](FaultyLaw& law) { measure_rate(law, difference_as<std::uint32_t>); }},
     {"cascade-rate-dt-filtered", "timing", Stage::timing, "low-passes dt of the rate unit",
      "jitter", "a helpful extra", [](FaultyLaw& law) { measure_rate(law, filtered()); }},
+    {"cascade-rate-dt-milli-for-micro", "timing", Stage::timing,
+     "takes the times of the rate unit as milliseconds", "rates above 50 Hz", "a wrong unit",
+     [](FaultyLaw& law) { measure_rate(law, milli_for_micro); }},
+    {"cascade-rate-clock-in-ms", "timing", Stage::timing,
+     "holds timestamps of the rate unit in whole milliseconds", "333 Hz, or jitter",
+     "integer division", [](FaultyLaw& law) { measure_rate(law, of_clock_in_ms); }},
+    {"cascade-rate-clock-in-int32", "timing", Stage::timing,
+     "holds timestamps of the rate unit in 32 signed bits", "timestamps across 2^31 us",
+     "a narrow type", [](FaultyLaw& law) { measure_rate(law, difference_as<std::int32_t>); }},
+    {"cascade-rate-dt-first-is-minimum", "timing", Stage::timing,
+     "uses the smallest dt in the first step of the rate unit", "the first step", "initial state",
+     [](FaultyLaw& law) { measure_rate(law, none_at_first); }},
 };
 
 }  // namespace

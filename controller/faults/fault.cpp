@@ -120,7 +120,10 @@ std::vector<Subject> subjects() {
           {in_cascade::yaw_filter_faults(), from_v1_16_0},
           {in_cascade::battery_faults(), cascades},
           {in_cascade::parameter_faults(), cascades},
-          {in_cascade::timing_faults(), cascades}};
+          {in_cascade::timing_faults(), cascades},
+          {in_cascade::axis_faults(), cascades},
+          {in_cascade::signal_faults(), cascades},
+          {in_cascade::step_faults(), cascades}};
 }
 
 std::vector<Fault> all_faults() {

@@ -55,6 +55,9 @@ std::span<const Fault> yaw_filter_faults();
 std::span<const Fault> battery_faults();
 std::span<const Fault> parameter_faults();
 std::span<const Fault> timing_faults();
+std::span<const Fault> axis_faults();
+std::span<const Fault> signal_faults();
+std::span<const Fault> step_faults();
 }  // namespace in_cascade
 
 }  // namespace attest::faults

@@ -26,6 +26,11 @@ void read_from(FaultyLaw& law) {
   change_parameters(law, [](Parameters& p) { p.*to = p.*from; });
 }
 
+template <float P::*one, float P::*other>
+void exchange(FaultyLaw& law) {
+  change_parameters(law, [](Parameters& p) { std::swap(p.*one, p.*other); });
+}
+
 // One parameter always has its default.
 template <float P::*member>
 void never_read(FaultyLaw& law) {
@@ -44,6 +49,10 @@ void change_gains(FaultyLaw& law, Change change) {
 
 constexpr const char* wrong_name = "a wrong parameter";
 constexpr const char* not_read = "a missing parameter";
+
+constexpr Fault axis_fault(std::string_view id, std::string_view what, void (*inject)(FaultyLaw&)) {
+  return {id, "parameters", Stage::parameters, what, "values that differ", "wrong axis", inject};
+}
 
 const Fault parameter_list[] = {
     {"param-at-start-only", "parameters", Stage::parameters, "reads parameters once",
@@ -225,6 +234,48 @@ const Fault parameter_list[] = {
          }
        });
      }},
+    axis_fault("p-exchanged", "exchanges MC_ROLL_P and MC_PITCH_P",
+               exchange<&P::mc_roll_p, &P::mc_pitch_p>),
+    axis_fault("rate-p-exchanged", "exchanges MC_ROLLRATE_P and MC_PITCHRATE_P",
+               exchange<&P::mc_rollrate_p, &P::mc_pitchrate_p>),
+    axis_fault("rate-i-exchanged", "exchanges MC_ROLLRATE_I and MC_PITCHRATE_I",
+               exchange<&P::mc_rollrate_i, &P::mc_pitchrate_i>),
+    axis_fault("rate-d-exchanged", "exchanges MC_ROLLRATE_D and MC_PITCHRATE_D",
+               exchange<&P::mc_rollrate_d, &P::mc_pitchrate_d>),
+    axis_fault("rate-ff-exchanged", "exchanges MC_ROLLRATE_FF and MC_PITCHRATE_FF",
+               exchange<&P::mc_rollrate_ff, &P::mc_pitchrate_ff>),
+    axis_fault("rate-p-roll-yaw", "exchanges MC_ROLLRATE_P and MC_YAWRATE_P",
+               exchange<&P::mc_rollrate_p, &P::mc_yawrate_p>),
+    axis_fault("rate-i-roll-yaw", "exchanges MC_ROLLRATE_I and MC_YAWRATE_I",
+               exchange<&P::mc_rollrate_i, &P::mc_yawrate_i>),
+    axis_fault("rate-d-roll-yaw", "exchanges MC_ROLLRATE_D and MC_YAWRATE_D",
+               exchange<&P::mc_rollrate_d, &P::mc_yawrate_d>),
+    axis_fault("rate-max-roll-yaw", "exchanges MC_ROLLRATE_MAX and MC_YAWRATE_MAX",
+               exchange<&P::mc_rollrate_max, &P::mc_yawrate_max>),
+    axis_fault("rate-max-pitch-yaw", "exchanges MC_PITCHRATE_MAX and MC_YAWRATE_MAX",
+               exchange<&P::mc_pitchrate_max, &P::mc_yawrate_max>),
+    axis_fault("acro-max-exchanged", "exchanges MC_ACRO_R_MAX and MC_ACRO_P_MAX",
+               exchange<&P::mc_acro_r_max, &P::mc_acro_p_max>),
+    axis_fault("roll-p-of-pitch", "reads MC_PITCH_P instead of MC_ROLL_P",
+               read_from<&P::mc_roll_p, &P::mc_pitch_p>),
+    axis_fault("rollrate-p-of-pitch", "reads the pitch rate gain for roll",
+               read_from<&P::mc_rollrate_p, &P::mc_pitchrate_p>),
+    axis_fault("rollrate-i-of-pitch", "reads the pitch integral gain for roll",
+               read_from<&P::mc_rollrate_i, &P::mc_pitchrate_i>),
+    axis_fault("rollrate-d-of-pitch", "reads the pitch D gain for roll",
+               read_from<&P::mc_rollrate_d, &P::mc_pitchrate_d>),
+    axis_fault("rollrate-ff-of-pitch", "reads the pitch feed-forward for roll",
+               read_from<&P::mc_rollrate_ff, &P::mc_pitchrate_ff>),
+    axis_fault("rollrate-max-of-pitch", "reads the pitch limit for roll",
+               read_from<&P::mc_rollrate_max, &P::mc_pitchrate_max>),
+    axis_fault("yawrate-p-of-roll", "reads the roll rate gain for yaw",
+               read_from<&P::mc_yawrate_p, &P::mc_rollrate_p>),
+    axis_fault("yawrate-i-of-roll", "reads the roll integral gain for yaw",
+               read_from<&P::mc_yawrate_i, &P::mc_rollrate_i>),
+    axis_fault("yawrate-ff-of-roll", "reads the roll feed-forward for yaw",
+               read_from<&P::mc_yawrate_ff, &P::mc_rollrate_ff>),
+    axis_fault("yawrate-max-of-roll", "reads the roll limit for yaw",
+               read_from<&P::mc_yawrate_max, &P::mc_rollrate_max>),
 };
 
 }  // namespace

@@ -215,6 +215,16 @@ TEST(FaultyUnits, WithoutAFaultAreTheReference) {
   expect_reference<cascade::RateUnitTable<float>>(rate());
 }
 
+// Each changes the stage that it finds, so both act, also in one stage.
+TEST(FaultyUnits, TwoFaultsOfOneStageActTogether) {
+  const Fault* const signs[] = {find_fault("cascade-i-reversed"), find_fault("cascade-d-missing")};
+  const Vector one = Vector::Ones(), two = 2 * one, three = 3 * one, four = 4 * one;
+  EXPECT_EQ(law_with(signs).rate_unit.rate.torque(one, two, three, four), Vector(one - two + four));
+  const Fault* const landed[] = {find_fault("cascade-landed-ignored"),
+                                 find_fault("cascade-maybe-landed-ignored")};
+  EXPECT_TRUE(law_with(landed).rate_unit.rate.may_integrate(true, true));
+}
+
 TEST(FaultyUnits, TwoFaultsActTogether) {
   const Fault* const both[] = {find_fault("cascade-rate-thrust-up"),
                                find_fault("cascade-d-missing")};

@@ -213,7 +213,7 @@ void start(Draw& draw, attest_attitude_inputs& in) {
 void draw_rates(Draw& draw, attest_rate_inputs& in) {
   const float range = draw.of({0.5f, 0.5f, 9.0f});
   for (float& rate : in.vehicle_angular_velocity.xyz) {
-    rate = draw.chance(0.003f) ? nan : draw.uniform(-range, range);
+    rate = draw.chance(0.003f) ? draw.of({nan, infinity}) : draw.uniform(-range, range);
   }
   for (float& acceleration : in.vehicle_angular_velocity.xyz_derivative) {
     acceleration = draw.uniform(-20, 20);
