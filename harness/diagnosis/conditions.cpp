@@ -215,9 +215,9 @@ void add_of_parameters(const ModuleUnderTest& subject, const Adder& add) {
         add.trace.parameters.begin(), add.trace.parameters.end(), [&](const auto& change) {
           return change.name == parameter.name && change.value != parameter.default_value;
         });
-    // The same at all ticks of the vector.
-    add.of_sample(fmt::format("{} is not {:g}", parameter.name, parameter.default_value),
-                  [is_set](const Sample&) { return is_set; });
+    add.conditions.push_back(
+        {fmt::format("{} is not {:g}", parameter.name, parameter.default_value),
+         [is_set](std::size_t, int) { return is_set; }, true});
   }
 }
 

@@ -14,6 +14,7 @@ struct Condition {
   std::string text;  // "the tilt error exceeds 90 deg"
   // Whether it holds at a tick, for an output about `axis` (OutputsOf::axis).
   std::function<bool(std::size_t tick, int axis)> holds;
+  bool is_of_parameter = false;  // the same at all ticks of a vector
 };
 
 // Those of the law come first, then those of the parameters of the trace, then those of each input.

@@ -72,7 +72,7 @@ bool Search::confirm(bool at_last) {
     }
     const auto worst = worst_suspect(together, at_last);
     if (!worst) {
-      count_explained(together);
+      find_explained(together);
       return true;
     }
     const auto place = suspects_.begin() + static_cast<std::ptrdiff_t>(*worst);
@@ -83,15 +83,16 @@ bool Search::confirm(bool at_last) {
   return true;
 }
 
-// Counts the vectors of which each suspect explains a part.
-void Search::count_explained(const std::vector<VectorSimilarity>& together) {
+// Finds the vectors of which each suspect explains a part.
+void Search::find_explained(const std::vector<VectorSimilarity>& together) {
   for (std::size_t i = 0; i < suspects_.size(); ++i) {
-    std::size_t& explained = suspects_[i].explained = 0;
+    suspects_[i].cases.clear();
     for (const VectorSimilarity& vector : together) {
       const OutputMask needed = ~vector.similarities.front().parted &
                                 vector.similarities[i + 1].parted & vector.deviating;
-      explained += needed != 0 ? 1 : 0;
+      if (needed != 0) suspects_[i].cases.push_back(vector.case_id);
     }
+    suspects_[i].explained = suspects_[i].cases.size();
   }
 }
 

@@ -9,13 +9,15 @@
 namespace attest {
 namespace {
 
-void find_first_stages(const std::vector<StageSet>& vectors, Diagnosis& diagnosis) {
-  std::map<unsigned long, std::size_t> counts;
-  for (const StageSet& stages : vectors) ++counts[stages.to_ulong()];
-  for (const auto& [stages, count] : counts) {
-    if (count <= diagnosis.in_first_stages) continue;
-    diagnosis.first_stages = StageSet(stages);
-    diagnosis.in_first_stages = count;
+void find_first_stage(const std::vector<std::optional<Stage>>& vectors, Diagnosis& diagnosis) {
+  std::map<Stage, std::size_t> counts;
+  for (const auto& stage : vectors) {
+    if (stage) ++counts[*stage];
+  }
+  for (const auto& [stage, count] : counts) {
+    if (count <= diagnosis.in_first_stage) continue;
+    diagnosis.first_stage = stage;
+    diagnosis.in_first_stage = count;
   }
 }
 
@@ -45,11 +47,11 @@ std::optional<Diagnosis> diagnose_library_calls(const std::vector<ExactVector>& 
   diagnosis.unexplained = suspect->failing - suspect->explained;
   diagnosis.stage = suspect->fault->stage;
   diagnosis.suspects = {*suspect};
-  std::vector<StageSet> stages;
+  std::vector<std::optional<Stage>> stages;
   for (const ExactVector& vector : vectors) {
-    if (!passes(vector)) stages.push_back(vector.stages);
+    if (!passes(vector)) stages.push_back(vector.stage);
   }
-  find_first_stages(stages, diagnosis);
+  find_first_stage(stages, diagnosis);
   return diagnosis;
 }
 
@@ -60,11 +62,12 @@ std::optional<Diagnosis> diagnose_values(const Evidence& evidence) {
   diagnosis.vectors = search.vectors().size();
   diagnosis.failing = search.failing().size();
   diagnosis.suspects = search.suspects();
-  diagnosis.unexplained = search.unexplained_count();
+  diagnosis.unexplained_cases = search.unexplained_cases();
+  diagnosis.unexplained = diagnosis.unexplained_cases.size();
   if (!diagnosis.suspects.empty()) diagnosis.stage = diagnosis.suspects.front().fault->stage;
-  std::vector<StageSet> stages;
-  for (const VectorSimilarity& vector : search.failing()) stages.push_back(vector.stages);
-  find_first_stages(stages, diagnosis);
+  std::vector<std::optional<Stage>> stages;
+  for (const VectorSimilarity& vector : search.failing()) stages.push_back(vector.stage);
+  find_first_stage(stages, diagnosis);
   find_specific_case(search.failing(), diagnosis);
   if (evidence.observe && diagnosis.unexplained > 0) {
     diagnosis.patterns = patterns_of(evidence.observe(search.vectors(), search.all_suspects()));

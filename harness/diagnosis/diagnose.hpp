@@ -27,19 +27,22 @@ struct Suspect {
   std::vector<const faults::Fault*> ambiguity_group;  // at most four, which explain the same
   // How many others explain the same outputs within the tolerances, but perhaps less exactly.
   std::size_t others = 0;
+  std::vector<std::string> cases = {};  // the failing ones that it explains, in whole or in part
 };
 
 struct Diagnosis {
   std::size_t vectors = 0, failing = 0;
   // Failing vectors in which all suspects together do not have the port's outputs.
   std::size_t unexplained = 0;
-  std::vector<Suspect> suspects;     // the one that explains the most first
-  std::vector<Pattern> patterns;     // of the unexplained vectors
+  std::vector<std::string> unexplained_cases;  // of these vectors
+  std::vector<Suspect> suspects;               // the one that explains the most first
+  std::vector<Pattern> patterns;               // of the unexplained vectors
   std::vector<std::string> remarks;  // about the verdicts of the whole run, filled in by the caller
   std::optional<faults::Stage> stage;  // of the first suspect
-  // The stages of the first deviation in most of the failing vectors, and their number.
-  StageSet first_stages;
-  std::size_t in_first_stages = 0;
+  // The stage of the first deviation in most of the failing vectors, as reports count it
+  // (stage_of()), and the number of these vectors.
+  std::optional<Stage> first_stage;
+  std::size_t in_first_stage = 0;
   // The failing case in which the fewest faults of the catalogue deviate, and their number. The
   // fewer mistakes a case shows, the more its failure says about the mistake. At a tie the first.
   std::string specific_case;
@@ -53,7 +56,7 @@ struct ExactVector {
   std::size_t ticks = 0;
   bool deviates = false;
   LibraryMatches library;
-  StageSet stages = {};  // of its first deviation
+  std::optional<Stage> stage = {};  // of its first deviation
 };
 
 // What diagnose() knows about a port. The functions take indices of vectors: the first `failing` of

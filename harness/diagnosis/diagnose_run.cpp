@@ -114,8 +114,8 @@ Evidence Laboratory::evidence() {
     std::vector<ObservedVector> observed;
     auto results = compare(vectors, {hypothesis}, true);
     for (std::size_t i = 0; i < results.size(); ++i) {
-      observed.push_back(
-          {vectors_[vectors[i]].vector.the_case->group, std::move(results[i].observation)});
+      observed.push_back({vectors_[vectors[i]].vector.the_case->group,
+                          std::move(results[i].observation), results[i].first});
     }
     return observed;
   };
@@ -125,7 +125,7 @@ Evidence Laboratory::evidence() {
   const auto numeric = compare(all, {Hypothesis{}}, false);
   for (std::size_t i = 0; i < numeric.size(); ++i) {
     const VectorSimilarity& one = numeric[i].similarity;
-    evidence.exact.push_back({one.ticks, one.deviating != 0, library_[i], one.stages});
+    evidence.exact.push_back({one.ticks, one.deviating != 0, library_[i], one.stage});
   }
   return evidence;
 }

@@ -74,6 +74,15 @@ void add_spread(const std::vector<DiagnosisVector>& vectors, std::size_t most, b
 
 using nlohmann::json;
 
+json to_json(const std::optional<Stage>& stage) {
+  return stage ? json(static_cast<int>(*stage)) : json();
+}
+
+std::optional<Stage> stage_from(const json& in) {
+  if (in.is_null()) return std::nullopt;
+  return static_cast<Stage>(in.get<int>());
+}
+
 // The similarities are rows of numbers without keys, because there are hundreds of faults.
 json to_json(const VectorComparison& comparison) {
   const VectorSimilarity& similarity = comparison.similarity;
@@ -86,8 +95,11 @@ json to_json(const VectorComparison& comparison) {
           {"misfit", similarity.misfit},
           {"faults", rows},
           {"stages", similarity.stages.to_ulong()},
+          {"stage", to_json(similarity.stage)},
           {"case", similarity.case_id},
-          {"observation", attest::to_json(comparison.observation)}};
+          {"observation", attest::to_json(comparison.observation)},
+          {"counted", comparison.first ? to_json(comparison.first->counted) : json()},
+          {"written", comparison.first ? to_json(comparison.first->written) : json()}};
 }
 
 VectorComparison comparison_from(const json& in) {
@@ -102,19 +114,36 @@ VectorComparison comparison_from(const json& in) {
                                 row.at(4).get<OutputMask>(), row.at(5).get<double>()});
   }
   out.stages = StageSet(in.at("stages").get<unsigned long>());
+  out.stage = stage_from(in.at("stage"));
   out.case_id = in.at("case").get<std::string>();
   comparison.observation = observation_from(in.at("observation"));
+  if (const auto counted = stage_from(in.at("counted"))) {
+    comparison.first = FirstStage{*counted, *stage_from(in.at("written"))};
+  }
   return comparison;
 }
 
-StageSet first_stages(const Trace& law, const Outputs& outputs, const Tolerances& tolerances) {
-  Trace got = law;
+Trace with_outputs(Trace trace, const Outputs& outputs) {
   for (std::size_t tick = 0; tick < outputs.size(); ++tick) {
-    got.samples[tick].copy_outputs(outputs[tick].sample());
+    trace.samples[tick].copy_outputs(outputs[tick].sample());
   }
+  return trace;
+}
+
+void find_stages(const Trace& law, const Trace& got, const Tolerances& tolerances,
+                 VectorSimilarity& similarity) {
   Comparison comparison = compare(got, law, tolerances);
   if (!comparison.first) comparison = compare(got, law, Tolerances(Level::exact));
-  return comparison.first ? stages_of(*comparison.first) : StageSet();
+  if (!comparison.first) return;
+  similarity.stages = stages_of(*comparison.first);
+  similarity.stage = stage_of(*comparison.first);
+}
+
+std::optional<FirstStage> first_stage(const Trace& got, const Trace& want,
+                                      const Tolerances& tolerances) {
+  const auto first = compare(got, want, tolerances).first;
+  if (!first) return std::nullopt;
+  return FirstStage{stage_of(*first), channels()[first->channel].stage};
 }
 
 json to_json(const VectorAnswer& answer) {
@@ -211,10 +240,13 @@ Result<VectorComparison> ComparisonJob::run(std::size_t) {
   VectorComparison found;
   found.similarity = similarity(got, right, answers, subject.module, tolerances);
   found.similarity.case_id = the_case.id();
-  if (vector_.outputs) found.similarity.stages = first_stages(*law, got, tolerances);
+  if (vector_.outputs) {
+    find_stages(*law, with_outputs(*law, got), tolerances, found.similarity);
+  }
   if (observes_) {
-    found.observation =
-        observe(*law, got, answers.distinct[answers.of_fault.front()], subject, tolerances);
+    const Outputs& expected = answers.distinct[answers.of_fault.front()];
+    found.observation = observe(*law, got, expected, subject, tolerances);
+    found.first = first_stage(with_outputs(*law, got), with_outputs(*law, expected), tolerances);
   }
   return found;
 }

@@ -82,7 +82,9 @@ struct AnsweredVector {
 // The similarities of the hypotheses, and how the port deviates from the first of them.
 struct VectorComparison {
   VectorSimilarity similarity;
-  Observation observation;  // only if requested
+  // Only if requested.
+  Observation observation;
+  std::optional<FirstStage> first;
 };
 
 template <>

@@ -151,17 +151,11 @@ Relations relations_of(const Compared& output, const Compared* published, std::s
   return one;
 }
 
-using Tallies = std::vector<std::pair<std::string, Tally>>;
-
-void add_tally(const std::string& text, const Tally& tally, Tallies& tallies) {
-  const auto known = std::find_if(tallies.begin(), tallies.end(),
-                                  [&](const auto& one) { return one.first == text; });
-  if (known == tallies.end()) {
-    tallies.emplace_back(text, tally);
-    return;
-  }
-  known->second.deviating += tally.deviating;
-  known->second.agreeing += tally.agreeing;
+void add_to(std::vector<Where>& all, const Where& added) {
+  const auto known = std::ranges::find(all, added.condition, &Where::condition);
+  if (known == all.end()) return all.push_back(added);
+  known->tally.deviating += added.tally.deviating;
+  known->tally.agreeing += added.tally.agreeing;
 }
 
 void count(bool deviates, Tally& tally) { ++(deviates ? tally.deviating : tally.agreeing); }
@@ -185,7 +179,7 @@ void Relations::add(const Relations& other) {
 void Observed::add(const Observed& other) {
   all.deviating += other.all.deviating;
   all.agreeing += other.all.agreeing;
-  for (const auto& [text, tally] : other.where) add_tally(text, tally, where);
+  for (const Where& one : other.where) add_to(where, one);
   relations.add(other.relations);
 }
 
@@ -213,7 +207,8 @@ Observation observe(const Trace& given, const Outputs& port, const Outputs& expe
       for (std::size_t tick = 0; tick < port.size(); ++tick) {
         if (condition.holds(tick, output.axis)) count(output.deviates[tick], tally);
       }
-      if (tally.deviating + tally.agreeing > 0) add_tally(condition.text, tally, observed.where);
+      if (tally.deviating + tally.agreeing == 0) continue;
+      add_to(observed.where, {condition.text, tally, condition.is_of_parameter});
     }
   }
   return observation;
@@ -223,8 +218,9 @@ nlohmann::json to_json(const Observation& observation) {
   nlohmann::json rows = nlohmann::json::array();
   for (const auto& [of, observed] : observation) {
     nlohmann::json where = nlohmann::json::array();
-    for (const auto& [text, tally] : observed.where) {
-      where.push_back(nlohmann::json::array({text, tally.deviating, tally.agreeing}));
+    for (const Where& one : observed.where) {
+      where.push_back(nlohmann::json::array(
+          {one.condition, one.tally.deviating, one.tally.agreeing, one.is_of_parameter}));
     }
     const Relations& r = observed.relations;
     rows.push_back({static_cast<int>(of.stage), of.axis, observed.all.deviating,
@@ -242,10 +238,10 @@ Observation observation_from(const nlohmann::json& in) {
     Observed& observed =
         observation[{static_cast<Stage>(row.at(0).get<int>()), row.at(1).get<int>()}];
     observed.all = {row.at(2).get<std::size_t>(), row.at(3).get<std::size_t>()};
-    for (const auto& tally : row.at(4)) {
-      observed.where.emplace_back(
-          tally.at(0).get<std::string>(),
-          Tally{tally.at(1).get<std::size_t>(), tally.at(2).get<std::size_t>()});
+    for (const auto& one : row.at(4)) {
+      observed.where.push_back({one.at(0).get<std::string>(),
+                                {one.at(1).get<std::size_t>(), one.at(2).get<std::size_t>()},
+                                one.at(3).get<bool>()});
     }
     const auto& numbers = row.at(5);
     const auto count = [&](std::size_t i) { return numbers.at(i).get<std::size_t>(); };

@@ -25,6 +25,14 @@ struct OutputsOf {
   friend auto operator<=>(const OutputsOf&, const OutputsOf&) = default;
 };
 
+// The stage of a first deviation.
+struct FirstStage {
+  Stage counted = Stage::input;  // as reports count it (stage_of())
+  Stage written = Stage::input;  // that of the output (OutputsOf::stage)
+
+  friend auto operator<=>(const FirstStage&, const FirstStage&) = default;
+};
+
 // Values that deviate and values that agree, while a condition holds.
 struct Tally {
   std::size_t deviating = 0, agreeing = 0;
@@ -48,10 +56,16 @@ struct Relations {
   void add(const Relations& other);
 };
 
+// The values at which a condition holds.
+struct Where {
+  std::string condition;  // "the tilt error exceeds 90 deg"
+  Tally tally;
+  bool is_of_parameter = false;  // Condition::is_of_parameter
+};
+
 struct Observed {
-  Tally all;  // without a condition
-  // "the tilt error exceeds 90 deg"; in the order of conditions_of().
-  std::vector<std::pair<std::string, Tally>> where;
+  Tally all;                 // without a condition
+  std::vector<Where> where;  // in the order of conditions_of()
   Relations relations;
 
   void add(const Observed& other);

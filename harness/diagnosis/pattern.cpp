@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,10 +16,13 @@ namespace {
 // The share of the deviating values at which a condition must hold: a few may deviate for another
 // reason.
 constexpr double least_recall = 0.99;
-// The largest share of the agreeing values at which it may hold. Above, it separates nothing.
-constexpr double most_agreeing = 0.4;
-// In fewer vectors a condition may hold by chance.
-constexpr std::size_t least_vectors = 2;
+// The largest share of the agreeing values at which it may hold. Above, it separates nothing. Up to
+// the larger one, nearly all values must deviate where it holds.
+constexpr double few_agreeing = 0.1, most_agreeing = 0.4, least_precision = 0.9;
+// The share of all values that agree where it does not hold. With fewer, it holds nearly always.
+constexpr double least_outside = 0.2;
+// In fewer vectors a condition may hold by chance: one of the law, one of a parameter.
+constexpr std::size_t least_vectors = 2, least_vectors_of_parameter = 3;
 // Fewer values may have a relation by chance.
 constexpr std::size_t least_values = 5;
 // Quotients are equal within this, relative.
@@ -30,15 +34,28 @@ double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-std::string condition_in(const Observed& observed) {
+// Whether values deviate where the condition holds, and agree elsewhere.
+bool separates(const Where& where, const Tally& all) {
+  const auto [deviating, agreeing] = where.tally;
+  if (share(deviating, all.deviating) < least_recall) return false;
+  const std::size_t outside = all.agreeing - agreeing;
+  if (share(outside, all.deviating + all.agreeing) < least_outside) return false;
+  const bool holds_rarely = share(agreeing, all.agreeing) <= few_agreeing;
+  const bool is_precise = share(deviating, deviating + agreeing) >= least_precision;
+  return where.is_of_parameter ? holds_rarely && is_precise : holds_rarely || is_precise;
+}
+
+// The condition that separates best; empty if none does. `of_parameter`: only those of parameters,
+// or only others.
+std::string condition_in(const Observed& observed, bool of_parameter) {
   std::string best;
   double smallest = most_agreeing;
-  for (const auto& [text, tally] : observed.where) {
-    if (share(tally.deviating, observed.all.deviating) < least_recall) continue;
-    const double agreeing = share(tally.agreeing, observed.all.agreeing);
+  for (const Where& one : observed.where) {
+    if (one.is_of_parameter != of_parameter || !separates(one, observed.all)) continue;
+    const double agreeing = share(one.tally.agreeing, observed.all.agreeing);
     if (agreeing >= smallest - 1e-3) continue;
     smallest = agreeing;
-    best = text;
+    best = one.condition;
   }
   return best;
 }
@@ -83,19 +100,21 @@ std::string names_of_axes(const std::set<int>& axes) {
   return fmt::format("{}", fmt::join(list, " and "));
 }
 
-// The first stage in which a vector deviates.
-std::optional<Stage> stage_in(const Observation& observation) {
-  for (const auto& [of, observed] : observation) {
-    if (observed.all.deviating > 0) return of.stage;
-  }
-  return std::nullopt;
-}
-
 using Vectors = std::vector<const ObservedVector*>;
+
+void find_condition(const Observed& observed, Pattern& pattern) {
+  if (pattern.vectors < least_vectors) return;
+  pattern.condition = condition_in(observed, false);
+  if (!pattern.relation.empty() || !pattern.condition.empty()) return;
+  if (pattern.vectors < least_vectors_of_parameter) return;
+  pattern.condition = condition_in(observed, true);
+  pattern.is_of_parameter = !pattern.condition.empty();
+}
 
 // The pattern of vectors that deviate first in `stage`. Of the others, only vectors of the same
 // groups count: other groups differ in more than what makes these vectors deviate.
-Pattern pattern_of(Stage stage, const Vectors& deviating, const Vectors& others) {
+Pattern pattern_of(FirstStage first, const Vectors& deviating, const Vectors& others) {
+  const Stage stage = first.written;
   std::set<int> axes;
   for (const ObservedVector* vector : deviating) {
     for (const auto& [of, observed] : vector->observation) {
@@ -103,7 +122,7 @@ Pattern pattern_of(Stage stage, const Vectors& deviating, const Vectors& others)
     }
   }
   Pattern pattern;
-  pattern.stage = stage;
+  pattern.stage = first.counted;
   pattern.axes = names_of_axes(axes);
   pattern.vectors = deviating.size();
   Observed sum;
@@ -122,8 +141,8 @@ Pattern pattern_of(Stage stage, const Vectors& deviating, const Vectors& others)
   for (const ObservedVector* vector : others) {
     if (groups.contains(vector->group)) add(*vector);
   }
-  if (deviating.size() >= least_vectors) pattern.condition = condition_in(sum);
   pattern.relation = relation_in(sum.relations, stage);
+  find_condition(sum, pattern);
   return pattern;
 }
 
@@ -154,15 +173,15 @@ void join_relations(std::vector<Pattern>& patterns) {
       continue;
     }
     known->condition.clear();
-    join({known->stage, pattern.axes, known->relation, "", pattern.vectors, pattern.groups},
-         joined);
+    pattern.condition.clear();
+    join(std::move(pattern), joined);
   }
   patterns = std::move(joined);
 }
 
-void add_patterns(Stage stage, const Vectors& deviating, const Vectors& agreeing,
+void add_patterns(FirstStage first, const Vectors& deviating, const Vectors& agreeing,
                   std::vector<Pattern>& patterns) {
-  Pattern whole = pattern_of(stage, deviating, agreeing);
+  Pattern whole = pattern_of(first, deviating, agreeing);
   if (!whole.condition.empty() || !whole.relation.empty() || whole.groups.size() == 1) {
     patterns.push_back(std::move(whole));
     return;
@@ -172,30 +191,43 @@ void add_patterns(Stage stage, const Vectors& deviating, const Vectors& agreeing
     for (const ObservedVector* vector : deviating) {
       if (vector->group == group) of_group.push_back(vector);
     }
-    join(pattern_of(stage, of_group, agreeing), patterns);
+    join(pattern_of(first, of_group, agreeing), patterns);
   }
   join_relations(patterns);
 }
 
 }  // namespace
 
+std::string Pattern::values() const {
+  std::string what = relation.empty() ? "deviate" : relation;
+  if (!axes.empty()) what = fmt::format("about {} {}", axes, what);
+  if (!condition.empty()) what += ", only where " + condition;
+  return what;
+}
+
+bool Pattern::says_more() const {
+  return !relation.empty() || (!condition.empty() && !is_of_parameter);
+}
+
 std::vector<Pattern> patterns_of(const std::vector<ObservedVector>& vectors) {
-  std::map<Stage, Vectors> deviating;
+  std::map<FirstStage, Vectors> deviating;
   Vectors agreeing;
   for (const ObservedVector& vector : vectors) {
-    const auto stage = stage_in(vector.observation);
-    if (stage) {
-      deviating[*stage].push_back(&vector);
+    if (vector.first) {
+      deviating[*vector.first].push_back(&vector);
     } else {
       agreeing.push_back(&vector);
     }
   }
   std::vector<Pattern> patterns;
-  for (const auto& [stage, of_stage] : deviating) {
-    add_patterns(stage, of_stage, agreeing, patterns);
+  for (const auto& [first, of_stage] : deviating) {
+    add_patterns(first, of_stage, agreeing, patterns);
   }
-  std::stable_sort(patterns.begin(), patterns.end(),
-                   [](const Pattern& a, const Pattern& b) { return a.vectors > b.vectors; });
+  const auto order = [](const Pattern& one) {
+    return std::tuple(!one.says_more(), one.is_of_parameter,
+                      -static_cast<std::ptrdiff_t>(one.vectors));
+  };
+  std::ranges::stable_sort(patterns, {}, order);
   return patterns;
 }
 

@@ -276,6 +276,12 @@ std::vector<std::size_t> Search::vectors() const {
   return all;
 }
 
+std::vector<std::string> Search::unexplained_cases() const {
+  std::vector<std::string> cases;
+  for (const std::size_t v : unexplained()) cases.push_back(alone_[v].case_id);
+  return cases;
+}
+
 Search::Indices Search::unexplained() const {
   Indices indices;
   for (std::size_t v = 0; v < left_.size(); ++v) {

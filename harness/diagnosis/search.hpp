@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "harness/diagnosis/diagnose.hpp"
@@ -35,7 +36,7 @@ class Search {
   // After run(). The suspect that explains the most comes first.
   std::vector<Suspect> suspects() const;
   Hypothesis all_suspects() const;
-  std::size_t unexplained_count() const { return unexplained().size(); }
+  std::vector<std::string> unexplained_cases() const;
   // The failing vectors that deviate, with the similarities of each fault.
   const std::vector<VectorSimilarity>& failing() const { return alone_; }
   // The indices in the evidence of these vectors, and of those that passed.
@@ -65,7 +66,7 @@ class Search {
   bool confirm(bool at_last);
   std::optional<std::size_t> worst_suspect(const std::vector<VectorSimilarity>& together,
                                            bool at_last) const;
-  void count_explained(const std::vector<VectorSimilarity>& together);
+  void find_explained(const std::vector<VectorSimilarity>& together);
 
   const Evidence& evidence_;
   Indices failing_, passing_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -44,7 +45,8 @@ struct VectorSimilarity {
   std::size_t ticks = 0;
   OutputMask deviating = 0;              // outputs in which the port deviates from the law
   std::vector<Similarity> similarities;  // of each hypothesis, or of each distinct one
-  StageSet stages = {};                  // of the port's first deviation (Deviation::stages)
+  StageSet stages = {};                  // of the port's first deviation (stages_of())
+  std::optional<Stage> stage = {};       // of the same, as reports count it (stage_of())
   std::string case_id = {};
   double misfit = 0;  // of the law (Similarity::misfit)
 

@@ -107,8 +107,8 @@ std::string suspects_text(const Diagnosis& diagnosis) {
     if (diagnosis.failing == 0) return {};
     return fmt::format(
         "it looks like no fault of the catalogue; {} of {} deviate first in the {}\n",
-        diagnosis.in_first_stages, counted(diagnosis.failing, "failing vector"),
-        stages_text(diagnosis.first_stages));
+        diagnosis.in_first_stage, counted(diagnosis.failing, "failing vector"),
+        name_of(diagnosis.first_stage.value_or(Stage::input)));
   }
   std::string out = "it looks like:\n";
   for (const Suspect& suspect : diagnosis.suspects)
@@ -184,10 +184,7 @@ std::string first_stages(const RunResult& run) {
 }
 
 std::string pattern_text(const Pattern& pattern) {
-  std::string what = pattern.relation.empty() ? "deviate" : pattern.relation;
-  if (!pattern.axes.empty()) what = fmt::format("about {} {}", pattern.axes, what);
-  if (!pattern.condition.empty()) what += ", only where " + pattern.condition;
-  return fmt::format("{}: values {}", name_of(pattern.stage), what);
+  return fmt::format("{}: values {}", name_of(pattern.stage), pattern.values());
 }
 
 std::string mistakes_text(const Diagnosis& diagnosis) {

@@ -109,15 +109,17 @@ ordered_json diagnosis(const Diagnosis& found) {
                         {"groups", pattern.groups},
                         {"text", pattern_text(pattern)}});
   }
-  ordered_json out = {
-      {"stage", found.stage ? std::string(name_of(*found.stage)) : stages_text(found.first_stages)},
-      {"vectors", found.vectors},
-      {"failing_vectors", found.failing},
-      {"unexplained_vectors", found.unexplained},
-      {"first_stages", attest::names_of(found.first_stages)},
-      {"suspects", suspects},
-      {"patterns", patterns},
-      {"remarks", found.remarks}};
+  ordered_json first_stages = ordered_json::array();  // at most one
+  if (found.first_stage) first_stages.push_back(name_of(*found.first_stage));
+  const std::string first = found.first_stage ? std::string(name_of(*found.first_stage)) : "";
+  ordered_json out = {{"stage", found.stage ? std::string(name_of(*found.stage)) : first},
+                      {"vectors", found.vectors},
+                      {"failing_vectors", found.failing},
+                      {"unexplained_vectors", found.unexplained},
+                      {"first_stages", first_stages},
+                      {"suspects", suspects},
+                      {"patterns", patterns},
+                      {"remarks", found.remarks}};
   out["specific_case"] = {
       {"case", found.specific_case}, {"faults", found.shown_by_it}, {"why", one_line(found.why)}};
   return out;

@@ -201,11 +201,17 @@ TEST(DiagnosisCodec, AnAnswerComesBackAsItWas) {
 
 TEST(DiagnosisCodec, AComparisonComesBackAsItWas) {
   VectorComparison sent;
-  sent.similarity = {
-      30, 5, {{1, 2, 3, 4, 6, 0.5}, {7, 8, 9, 10, 11, 12}}, only(Stage::sticks), "modes/acro", 1.5};
+  sent.similarity = {30,
+                     5,
+                     {{1, 2, 3, 4, 6, 0.5}, {7, 8, 9, 10, 11, 12}},
+                     only(Stage::sticks),
+                     Stage::mixer,
+                     "modes/acro",
+                     1.5};
+  sent.first = FirstStage{Stage::sticks, Stage::attitude_law};
   Observed& observed = sent.observation[{Stage::rate_law, 2}];
   observed.all = {3, 4};
-  observed.where = {{"it is the first step", {1, 2}}};
+  observed.where = {{"it is the first step", {1, 2}, true}};
   observed.relations.values = 3;
   observed.relations.quotient_to = 0.25;
   const auto one = Codec<VectorComparison>::decode(Codec<VectorComparison>::encode(sent)).value();
@@ -213,6 +219,8 @@ TEST(DiagnosisCodec, AComparisonComesBackAsItWas) {
   EXPECT_EQ(one.similarity.deviating, 5u);
   EXPECT_EQ(one.similarity.misfit, 1.5);
   EXPECT_EQ(one.similarity.stages, only(Stage::sticks));
+  EXPECT_EQ(one.similarity.stage, Stage::mixer);
+  EXPECT_EQ(one.first, (FirstStage{Stage::sticks, Stage::attitude_law}));
   EXPECT_EQ(one.similarity.case_id, "modes/acro");
   ASSERT_THAT(one.similarity.similarities, SizeIs(2));
   const Similarity& last = one.similarity.similarities[1];
@@ -223,8 +231,9 @@ TEST(DiagnosisCodec, AComparisonComesBackAsItWas) {
   const Observed& back = one.observation.at({Stage::rate_law, 2});
   EXPECT_EQ(back.all.deviating, 3u);
   ASSERT_THAT(back.where, SizeIs(1));
-  EXPECT_EQ(back.where[0].first, "it is the first step");
-  EXPECT_EQ(back.where[0].second.agreeing, 2u);
+  EXPECT_EQ(back.where[0].condition, "it is the first step");
+  EXPECT_EQ(back.where[0].tally.agreeing, 2u);
+  EXPECT_TRUE(back.where[0].is_of_parameter);
   EXPECT_EQ(back.relations.values, 3u);
   EXPECT_EQ(back.relations.quotient_to, 0.25);
 }

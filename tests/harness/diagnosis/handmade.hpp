@@ -49,8 +49,8 @@ class HandMade {
     for (std::size_t v = first; v < end; ++v) port_.at(v).at(output) += value;
     return *this;
   }
-  HandMade& deviates_first(std::size_t vector, const StageSet& stages) {
-    stages_[vector] = stages;
+  HandMade& deviates_first(std::size_t vector, Stage stage) {
+    stages_[vector] = stage;
     return *this;
   }
 
@@ -76,7 +76,7 @@ class HandMade {
     VectorSimilarity vector;
     vector.ticks = 1;
     vector.case_id = "case " + std::to_string(v);
-    if (stages_.contains(v)) vector.stages = stages_.at(v);
+    if (stages_.contains(v)) vector.stage = stages_.at(v);
     for (std::size_t i = 0; i < outputs; ++i) {
       if (port_[v][i] != 0) vector.deviating |= 1U << i;
       vector.misfit += std::log2(1 + std::abs(port_[v][i]));
@@ -102,7 +102,7 @@ class HandMade {
   std::size_t failing_, passing_;
   std::map<std::string_view, std::vector<Vector>> effects_;
   std::vector<Vector> port_;
-  std::map<std::size_t, StageSet> stages_;
+  std::map<std::size_t, Stage> stages_;
 };
 
 inline std::vector<std::string_view> ids_of(const std::vector<const faults::Fault*>& faults) {

@@ -24,8 +24,8 @@ Observation observed(std::string_view body, Change change) {
 }
 
 Tally where(const Observed& observed, std::string_view text) {
-  for (const auto& [condition, tally] : observed.where) {
-    if (condition == text) return tally;
+  for (const Where& one : observed.where) {
+    if (one.condition == text) return one.tally;
   }
   return {};
 }

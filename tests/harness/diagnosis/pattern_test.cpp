@@ -15,8 +15,8 @@ constexpr const char* landed = "vehicle_land_detected.landed is set";
 
 // A vector in which 10 values of a stage deviate and 10 agree.
 ObservedVector deviating(const std::string& group, Stage stage, int axis,
-                         std::vector<std::pair<std::string, Tally>> where = {}) {
-  ObservedVector vector{group, {}};
+                         std::vector<Where> where = {}) {
+  ObservedVector vector{group, {}, FirstStage{stage, stage}};
   Observed& observed = vector.observation[{stage, axis}];
   observed.all = {10, 10};
   observed.where = std::move(where);
@@ -25,8 +25,9 @@ ObservedVector deviating(const std::string& group, Stage stage, int axis,
 }
 
 ObservedVector agreeing(const std::string& group, Stage stage, int axis, std::size_t values,
-                        std::vector<std::pair<std::string, Tally>> where = {}) {
+                        std::vector<Where> where = {}) {
   ObservedVector vector = deviating(group, stage, axis, std::move(where));
+  vector.first.reset();
   vector.observation.begin()->second.all = {0, values};
   vector.observation.begin()->second.relations = {};
   return vector;
@@ -37,10 +38,32 @@ TEST(Patterns, OfVectorsThatAgreeThereAreNone) {
   EXPECT_THAT(patterns_of({agreeing("modes", Stage::sticks, 0, 9)}), IsEmpty());
 }
 
-TEST(Patterns, AVectorCountsInItsFirstStage) {
-  ObservedVector both = deviating("modes", Stage::rate_law, 0);
-  both.observation[{Stage::attitude_law, 2}].all = {1, 9};
-  const auto found = patterns_of({both, deviating("rates", Stage::rate_law, 1)});
+// Not in the stage that comes first in the law: the deviation may begin in a later one.
+TEST(Patterns, AVectorCountsInTheStageOfItsFirstDeviation) {
+  ObservedVector both = deviating("modes", Stage::attitude_law, 0);
+  both.observation[{Stage::rate_law, 1}].all = {9, 1};
+  both.first = FirstStage{Stage::rate_law, Stage::rate_law};
+  const auto found = patterns_of({both});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].stage, Stage::rate_law);
+  EXPECT_EQ(found[0].axes, "pitch");
+}
+
+// In acro the sticks write the rates setpoint of the controller.
+TEST(Patterns, TheStageIsTheOneThatReportsCount) {
+  ObservedVector acro = deviating("modes", Stage::attitude_law, 1);
+  acro.first = FirstStage{Stage::sticks, Stage::attitude_law};
+  acro.observation.begin()->second.relations.reversed = 10;
+  const auto found = patterns_of({acro});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].stage, Stage::sticks);
+  EXPECT_EQ(found[0].axes, "pitch");
+  EXPECT_EQ(found[0].relation, "have the other sign");
+}
+
+TEST(Patterns, EachStageHasItsOwn) {
+  const auto found = patterns_of(
+      {deviating("modes", Stage::attitude_law, 2), deviating("rates", Stage::rate_law, 1)});
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].stage, Stage::attitude_law);
   EXPECT_EQ(found[0].axes, "yaw");
@@ -64,6 +87,44 @@ TEST(Patterns, AConditionMustHoldAtNearlyAllDeviatingValues) {
   const auto found = patterns_of({one, one});
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].condition, "") << "and must not hold at nearly all others";
+}
+
+TEST(Patterns, AConditionThatHoldsNearlyAlwaysSeparatesNothing) {
+  ObservedVector one = deviating("a", Stage::attitude_law, 0, {{tilted, {90, 8}}});
+  one.observation.begin()->second.all = {90, 10};
+  EXPECT_EQ(patterns_of({one, one}).at(0).condition, "");
+  one.observation.begin()->second.all = {90, 40};
+  EXPECT_EQ(patterns_of({one, one}).at(0).condition, tilted);
+}
+
+// A parameter is the same in a whole vector.
+TEST(Patterns, AParameterIsNamedOnlyIfThereIsNothingElse) {
+  constexpr const char* parameter = "MC_ROLL_P is not 6.5";
+  const Where of_parameter{parameter, {10, 0}, true};
+  const auto found = [&](std::vector<Where> where, std::size_t vectors, std::size_t late) {
+    ObservedVector one = deviating("a", Stage::attitude_law, 0, std::move(where));
+    one.observation.begin()->second.relations.late = late;
+    return patterns_of(std::vector<ObservedVector>(vectors, one)).at(0);
+  };
+  EXPECT_EQ(found({of_parameter}, 3, 0).condition, parameter);
+  EXPECT_TRUE(found({of_parameter}, 3, 0).is_of_parameter);
+  EXPECT_EQ(found({of_parameter}, 2, 0).condition, "");
+  EXPECT_EQ(found({of_parameter}, 3, 10).condition, "") << "the relation says more";
+  EXPECT_EQ(found({of_parameter, {landed, {10, 1}}}, 3, 0).condition, landed);
+  EXPECT_EQ(found({{parameter, {10, 2}, true}}, 3, 0).condition, "") << "it does not separate";
+}
+
+TEST(Patterns, ThoseThatSayMoreComeFirst) {
+  const auto many = deviating("a", Stage::sticks, 0);
+  const auto by_parameter =
+      deviating("b", Stage::attitude_law, 0, {{"MC_ROLL_P is not 6.5", {10, 0}, true}});
+  ObservedVector late = deviating("c", Stage::rate_law, 0);
+  late.observation.begin()->second.relations.late = 10;
+  const auto found = patterns_of({by_parameter, by_parameter, by_parameter, many, many, late});
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].stage, Stage::rate_law);
+  EXPECT_EQ(found[1].stage, Stage::sticks);
+  EXPECT_EQ(found[2].stage, Stage::attitude_law);
 }
 
 // What holds in all vectors of a group, and in few of the others, says nothing.

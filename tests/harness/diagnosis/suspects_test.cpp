@@ -107,15 +107,14 @@ TEST(Suspects, TheSpecificCaseIsTheFailingOneInWhichTheFewestFaultsDeviate) {
   EXPECT_EQ(found->shown_by_it, 1u);
 }
 
-TEST(Suspects, TheStagesAreThoseOfMostFailingVectors) {
-  const StageSet rates = only(Stage::rate_law) | only(Stage::integrator);
+TEST(Suspects, TheFirstStageIsThatOfMostFailingVectors) {
   HandMade port(4, 2);
-  port.differs(0, 4, 0, 1).deviates_first(0, only(Stage::sticks)).deviates_first(1, rates);
-  port.deviates_first(2, rates).deviates_first(3, only(Stage::rate_law));
+  port.differs(0, 4, 0, 1).deviates_first(0, Stage::sticks).deviates_first(1, Stage::integrator);
+  port.deviates_first(2, Stage::integrator).deviates_first(3, Stage::rate_law);
   const auto found = port.diagnosed();
   ASSERT_TRUE(found);
-  EXPECT_EQ(found->first_stages, rates);
-  EXPECT_EQ(found->in_first_stages, 2u);
+  EXPECT_EQ(found->first_stage, Stage::integrator);
+  EXPECT_EQ(found->in_first_stage, 2u);
 }
 
 TEST(Suspects, WhatNoSuspectExplainsIsObserved) {
@@ -127,7 +126,7 @@ TEST(Suspects, WhatNoSuspectExplainsIsObserved) {
   evidence.observe = [&](const auto& asked, const Hypothesis& hypothesis) {
     vectors = asked;
     expected = hypothesis;
-    ObservedVector one{"modes", {}};
+    ObservedVector one{"modes", {}, FirstStage{Stage::sticks, Stage::sticks}};
     one.observation[{Stage::sticks, 0}].all = {3, 0};
     return std::vector<ObservedVector>{one};
   };
@@ -137,6 +136,24 @@ TEST(Suspects, WhatNoSuspectExplainsIsObserved) {
   EXPECT_THAT(ids_of(expected), ElementsAre(yaw_fault));
   ASSERT_EQ(found->patterns.size(), 1u);
   EXPECT_EQ(found->patterns.front().stage, Stage::sticks);
+}
+
+TEST(Suspects, HaveTheCasesThatTheyExplain) {
+  const auto found = HandMade(4, 1)
+                         .acts(yaw_fault, 0, 2, 0, 4)
+                         .acts(tilt_fault, 1, 3, 1, 4)
+                         .has(yaw_fault)
+                         .has(tilt_fault)
+                         .differs(3, 4, 0, 9)
+                         .diagnosed();
+  ASSERT_TRUE(found);
+  ASSERT_THAT(suspected(*found), UnorderedElementsAre(yaw_fault, tilt_fault));
+  for (const Suspect& suspect : found->suspects) {
+    const bool is_yaw = suspect.fault->id == yaw_fault;
+    EXPECT_THAT(suspect.cases,
+                ElementsAre(is_yaw ? "case 0" : "case 1", is_yaw ? "case 1" : "case 2"));
+  }
+  EXPECT_THAT(found->unexplained_cases, ElementsAre("case 3"));
 }
 
 // ---- several mistakes ---------------------------------------------------------------------------
