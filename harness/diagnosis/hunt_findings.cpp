@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -21,26 +22,22 @@ class Findings {
            const HostOptions& host)
       : passing_(passing), workers_(workers), host_(host) {}
 
-  Result<std::vector<HuntFinding>> of(std::span<const HuntFailure> failures) {
-    Jobs<ShrunkCase> jobs;
-    for (const HuntFailure& failure : failures) {
-      jobs.push_back(std::make_unique<ShrinkJob>(failure.target, failure.inputs, host_));
-    }
-    const auto shrunk = results_of(jobs, workers_, host_);
-    if (!shrunk) return tl::unexpected(shrunk.error());
-    for (std::size_t i = 0; i < shrunk->size(); ++i) {
-      auto finding = finding_of(failures[i], (*shrunk)[i]);
-      if (!finding) return tl::unexpected(finding.error());
-      add(*std::move(finding));
-    }
-    return std::move(found_);
-  }
+  Result<std::vector<HuntFinding>> of(std::span<const HuntFailure> failures);
 
  private:
-  Result<HuntFinding> finding_of(const HuntFailure& failure, const ShrunkCase& shrunk);
-  Result<void> diagnose(const HuntFailure& failure, const ShrunkCase& shrunk, HuntFinding& finding);
+  // A case of a diagnosis: its text, and its result.
+  using Vector = std::pair<std::string, VectorResult>;
+  // Failures of one module, with the same outputs.
+  using Together = std::vector<std::size_t>;
+
+  Result<HuntFinding> finding_of(const HuntFailure& failure, const ShrunkCase& shrunk) const;
+  std::vector<Together> together(std::span<const HuntFailure> failures,
+                                 const std::vector<ShrunkCase>& shrunk) const;
+  Result<void> diagnose(std::span<const HuntFailure> failures,
+                        const std::vector<ShrunkCase>& shrunk, const Together& indices,
+                        std::vector<HuntFinding>& findings) const;
   std::optional<Diagnosis> diagnosis_of(const HuntTarget& target,
-                                        const std::vector<std::pair<std::string, VectorResult>>&);
+                                        const std::vector<Vector>& vectors) const;
   void add(HuntFinding finding);
 
   std::span<const std::vector<HuntInputs>> passing_;
@@ -49,12 +46,13 @@ class Findings {
   std::vector<HuntFinding> found_;
 };
 
-// "rate_law_vehicle_torque_setpoint_xyz_0", of the first deviation.
+// "rate_law_vehicle_torque_setpoint", of the first deviation. Without the axis: what fails about
+// one axis mostly fails about the others, too.
 std::string name_without_fault(const VectorResult& failure) {
   if (!failure.first) return fmt::format("{}_{}", failure.name, name_of(failure.verdict));
   const Channel& channel = channels()[failure.first->channel];
-  return fmt::format("{}_{}_{}", name_of(stage_of(*failure.first)), channel.topic(),
-                     channel.field());
+  const std::string_view field = channel.is_published_flag() ? channel.field() : "";
+  return fmt::format("{}_{}_{}", name_of(stage_of(*failure.first)), channel.topic(), field);
 }
 
 std::string identifier(std::string text) {
@@ -78,7 +76,8 @@ Trace answer_in(const HuntFinding& finding, const Outputs& outputs) {
   return answer;
 }
 
-Result<HuntFinding> Findings::finding_of(const HuntFailure& failure, const ShrunkCase& shrunk) {
+Result<HuntFinding> Findings::finding_of(const HuntFailure& failure,
+                                         const ShrunkCase& shrunk) const {
   HuntFinding finding;
   finding.trials = 1 + failure.same;
   finding.failure = shrunk.needs_others ? failure.result : shrunk.of_shrunk;
@@ -86,9 +85,7 @@ Result<HuntFinding> Findings::finding_of(const HuntFailure& failure, const Shrun
   finding.name = identifier(name_without_fault(finding.failure));
   if (shrunk.needs_others) return finding;
   finding.toml = shrunk.shrunk;
-  if (failure.silent_topic.empty()) {
-    if (auto done = diagnose(failure, shrunk, finding); !done) return tl::unexpected(done.error());
-  } else {
+  if (!failure.silent_topic.empty()) {
     finding.name = "never_publishes_" + failure.silent_topic;
     finding.failure.reason = fmt::format(
         "the port never publishes {}; its other outputs are judged", failure.silent_topic);
@@ -107,41 +104,122 @@ Result<HuntFinding> Findings::finding_of(const HuntFailure& failure, const Shrun
   return finding;
 }
 
-Result<void> Findings::diagnose(const HuntFailure& failure, const ShrunkCase& shrunk,
-                                HuntFinding& finding) {
-  std::vector<std::pair<std::string, VectorResult>> vectors = {{shrunk.shrunk, shrunk.of_shrunk},
-                                                               {shrunk.whole, shrunk.of_whole}};
-  for (const HuntInputs& inputs : passing_[failure.index]) {
-    auto text = case_of(inputs, failure.target.level);
-    if (!text) return tl::unexpected(text.error());
-    VectorResult passed;
-    passed.profile = inputs.subject.profile;
-    passed.rate = inputs.rate;
-    vectors.emplace_back(*std::move(text), passed);
+Result<std::vector<HuntFinding>> Findings::of(std::span<const HuntFailure> failures) {
+  Jobs<ShrunkCase> jobs;
+  for (const HuntFailure& failure : failures) {
+    jobs.push_back(std::make_unique<ShrinkJob>(failure.target, failure.inputs, host_));
   }
-  finding.diagnosis = diagnosis_of(failure.target, vectors);
-  if (const faults::Fault* fault = fault_of(finding)) {
-    finding.name = identifier(std::string(fault->id));
+  const auto shrunk = results_of(jobs, workers_, host_);
+  if (!shrunk) return tl::unexpected(shrunk.error());
+  std::vector<HuntFinding> findings;
+  for (std::size_t i = 0; i < shrunk->size(); ++i) {
+    auto finding = finding_of(failures[i], (*shrunk)[i]);
+    if (!finding) return tl::unexpected(finding.error());
+    findings.push_back(*std::move(finding));
+  }
+  for (const Together& indices : together(failures, *shrunk)) {
+    auto done = diagnose(failures, *shrunk, indices, findings);
+    if (!done) return tl::unexpected(done.error());
+  }
+  for (HuntFinding& finding : findings) add(std::move(finding));
+  return std::move(found_);
+}
+
+// The failures that have a case and values to compare.
+std::vector<Findings::Together> Findings::together(std::span<const HuntFailure> failures,
+                                                   const std::vector<ShrunkCase>& shrunk) const {
+  std::vector<Together> groups;
+  for (std::size_t i = 0; i < failures.size(); ++i) {
+    if (shrunk[i].needs_others || !failures[i].silent_topic.empty()) continue;
+    const HuntTarget& target = failures[i].target;
+    const auto known = std::ranges::find_if(groups, [&](const Together& group) {
+      const HuntTarget& first = failures[group.front()].target;
+      return first.subject.module == target.subject.module &&
+             first.lacks.outputs == target.lacks.outputs;
+    });
+    if (known != groups.end()) {
+      known->push_back(i);
+    } else {
+      groups.push_back({i});
+    }
+  }
+  return groups;
+}
+
+// The id of a case of diagnosis_of().
+std::string trial_id(const VectorResult& result, std::size_t number) {
+  return fmt::format("{}/{}/trial_{}", result.profile, hunt_group, number);
+}
+
+// Of the suspects that explain a case, the one that explains the fewest: each mistake has a finding
+// of its own, also if the others act in all of its cases.
+std::optional<Suspect> suspect_of(const Diagnosis& diagnosis, const std::string& id) {
+  const auto has = [&](const std::vector<std::string>& cases) {
+    return std::ranges::find(cases, id) != cases.end();
+  };
+  std::optional<Suspect> found;
+  if (has(diagnosis.unexplained_cases)) return found;
+  for (const Suspect& suspect : diagnosis.suspects) {
+    if (has(suspect.cases) && (!found || suspect.explained < found->explained)) found = suspect;
+  }
+  return found;
+}
+
+std::string pattern_of(const Diagnosis& diagnosis, const VectorResult& failure) {
+  for (const Pattern& pattern : diagnosis.patterns) {
+    const bool is_its = failure.first && pattern.stage == stage_of(*failure.first);
+    if (is_its && pattern.says_more()) return pattern.values();
+  }
+  return "";
+}
+
+Result<void> Findings::diagnose(std::span<const HuntFailure> failures,
+                                const std::vector<ShrunkCase>& shrunk, const Together& indices,
+                                std::vector<HuntFinding>& findings) const {
+  std::vector<Vector> vectors;
+  for (const std::size_t i : indices) {
+    vectors.emplace_back(shrunk[i].shrunk, shrunk[i].of_shrunk);
+    vectors.emplace_back(shrunk[i].whole, shrunk[i].of_whole);
+  }
+  std::set<std::size_t> targets;
+  for (const std::size_t i : indices) targets.insert(failures[i].index);
+  for (const std::size_t target : targets) {
+    for (const HuntInputs& inputs : passing_[target]) {
+      auto text = case_of(inputs, failures[indices.front()].target.level);
+      if (!text) return tl::unexpected(text.error());
+      VectorResult passed;
+      passed.profile = inputs.subject.profile;
+      passed.rate = inputs.rate;
+      vectors.emplace_back(*std::move(text), passed);
+    }
+  }
+  const auto diagnosis = diagnosis_of(failures[indices.front()].target, vectors);
+  if (!diagnosis) return {};
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    HuntFinding& finding = findings[indices[i]];
+    finding.suspect = suspect_of(*diagnosis, trial_id(finding.failure, 2 * i));
+    if (!finding.suspect) finding.pattern = pattern_of(*diagnosis, finding.failure);
+    if (const faults::Fault* fault = fault_of(finding)) {
+      finding.name = identifier(std::string(fault->id));
+    }
   }
   return {};
 }
 
-// `vectors`: texts of cases with their results.
-std::optional<Diagnosis> Findings::diagnosis_of(
-    const HuntTarget& target, const std::vector<std::pair<std::string, VectorResult>>& vectors) {
+std::optional<Diagnosis> Findings::diagnosis_of(const HuntTarget& target,
+                                                const std::vector<Vector>& vectors) const {
   RunResult run;
   run.level = target.level;
   run.lacks = host_.said->lacks;
   std::vector<SelectedCase> cases;
-  for (const auto& [text, result] : vectors) {
-    const std::string name = fmt::format("trial_{}", cases.size());
-    const auto parsed =
-        parse_case_text(text, fmt::format("cases/{}/{}/{}.toml", result.profile, hunt_group, name));
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    const auto& [text, result] = vectors[i];
+    const auto parsed = parse_case_text(text, fmt::format("cases/{}.toml", trial_id(result, i)));
     if (!parsed) continue;
     cases.push_back({*parsed, {RunConfiguration{result.rate, std::nullopt}}});
     run.results.push_back(result);
     run.results.back().group = hunt_group;
-    run.results.back().name = name;
+    run.results.back().name = fmt::format("trial_{}", i);
   }
   DiagnosisOptions options;
   options.processes = workers_.processes;
@@ -151,39 +229,32 @@ std::optional<Diagnosis> Findings::diagnosis_of(
   return diagnose_run(run, cases, host, options);
 }
 
-// The fault that fits best, also if others do.
-const faults::Fault* best_fault(const HuntFinding& finding) {
-  return fitting_faults(finding) == 0 ? nullptr : finding.diagnosis->suspects.front().fault;
-}
-
-// Findings of one cause are one finding, with the shortest case that has the name of the fault.
+// Findings of one cause are one finding, with the shortest case.
 void Findings::add(HuntFinding finding) {
+  const auto fault_in = [](const HuntFinding& one) {
+    return one.suspect ? one.suspect->fault : nullptr;
+  };
   const auto same = std::ranges::find_if(found_, [&](const HuntFinding& one) {
-    const bool is_named = fault_of(one) != nullptr || fault_of(finding) != nullptr;
-    return one.name == finding.name || (is_named && best_fault(one) == best_fault(finding));
+    const bool has_cause = one.suspect || finding.suspect;
+    return has_cause ? fault_in(one) == fault_in(finding) : one.name == finding.name;
   });
   if (same == found_.end()) return found_.push_back(std::move(finding));
   const auto size = [](const HuntFinding& one) {
-    return std::tuple(fault_of(one) == nullptr, one.needs_others, one.trace.samples.size(),
-                      one.toml.size());
+    return std::tuple(one.needs_others, one.trace.samples.size(), one.toml.size());
   };
-  finding.trials = std::max(finding.trials, same->trials);
+  const std::size_t trials = std::max(finding.trials, same->trials);
   if (size(finding) < size(*same)) std::swap(finding, *same);
-  same->trials = std::max(finding.trials, same->trials);
+  same->trials = trials;
 }
 
 }  // namespace
 
 std::size_t fitting_faults(const HuntFinding& finding) {
-  const bool has_suspect = finding.diagnosis && !finding.diagnosis->suspects.empty();
-  return has_suspect ? 1 + finding.diagnosis->suspects.front().others : 0;
+  return finding.suspect ? 1 + finding.suspect->others : 0;
 }
 
 const faults::Fault* fault_of(const HuntFinding& finding) {
-  constexpr std::size_t most_named = 3;
-  const std::size_t fitting = fitting_faults(finding);
-  if (fitting == 0 || fitting > most_named) return nullptr;
-  return finding.diagnosis->suspects.front().fault;
+  return fitting_faults(finding) == 1 ? finding.suspect->fault : nullptr;
 }
 
 Result<std::vector<HuntFinding>> findings_of(std::span<const HuntFailure> failures,

@@ -1,5 +1,6 @@
-// The findings of a hunt: each failing trial is shrunk, diagnosed, and made a case. Those of one
-// cause become one finding.
+// The findings of a hunt: each failing trial is shrunk and made a case. A case of few ticks fits
+// many faults, so all failing trials of a module are diagnosed together. Those of one cause become
+// one finding.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +28,8 @@ struct HuntFailure {
 struct HuntFinding {
   std::string name;  // of its case: the fault that it resembles, or the stage and the output
   VectorResult failure;
-  std::optional<Diagnosis> diagnosis;
+  std::optional<Suspect> suspect = {};  // that explains it
+  std::string pattern = {};   // what the failing trials have in common that no fault explains
   std::string toml;           // the case file
   std::string mixer;          // its definition; empty: another module
   Trace trace;                // its inputs, with the outputs of the reference
@@ -36,11 +38,11 @@ struct HuntFinding {
   bool needs_others = false;  // fails only after other trials in the same process: has no case
 };
 
-// The fault of the catalogue that the finding resembles; null if there is none, or if so many fit
-// the small case that a name would be a guess.
+// The fault of the catalogue that the finding resembles; null if there is none, or if others fit
+// all failing trials as well: one name of several would be a guess.
 const faults::Fault* fault_of(const HuntFinding& finding);
 
-// How many faults fit it.
+// How many faults fit all failing trials of its cause.
 std::size_t fitting_faults(const HuntFinding& finding);
 
 // In the order of the failures. `passing`: of each target, trials that the port passes, to tell

@@ -29,15 +29,24 @@ std::string sentence_of(const HuntReport& report) {
                      counted(progress.trials, "trial"), counted(progress.steps, "step"));
 }
 
+// "fits `a`, `b`", or with many faults their number.
+std::string fits(const Suspect& suspect) {
+  if (suspect.others > suspect.ambiguity_group.size()) {
+    return fmt::format("fits {} mistakes of the catalogue", 1 + suspect.others);
+  }
+  std::string out = fmt::format("fits {}", suspect.fault->id);
+  for (const faults::Fault* other : suspect.ambiguity_group) out += fmt::format(", {}", other->id);
+  return out;
+}
+
 std::string resemblance(const HuntFinding& finding) {
   if (const faults::Fault* fault = fault_of(finding)) {
     return fmt::format("{}: {}", fault->id, fault->what);
   }
-  if (const std::size_t fitting = fitting_faults(finding); fitting > 0) {
-    return fmt::format("fits {} mistakes, e.g. {}", fitting,
-                       finding.diagnosis->suspects.front().fault->id);
-  }
-  return finding.failure.first ? stages_text(stages_of(*finding.failure.first)) : "";
+  if (!finding.failure.first) return "";
+  const std::string stages = stages_text(stages_of(*finding.failure.first));
+  if (finding.suspect) return stages + "; " + fits(*finding.suspect);
+  return finding.pattern.empty() ? stages : fmt::format("{}: values {}", stages, finding.pattern);
 }
 
 std::vector<Cell> row_of(const HuntFinding& finding) {
@@ -133,7 +142,7 @@ RunResult run_of(const HuntReport& report) {
   for (const HuntFinding& finding : report.found.findings) {
     run.results.push_back(finding.failure);
     run.results.back().name = finding.name;
-    if (finding.diagnosis && finding.failure.reason.empty()) {
+    if (finding.failure.reason.empty()) {
       run.results.back().reason = resemblance(finding);
     }
   }

@@ -16,29 +16,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
-using testing::UnorderedElementsAre;
-
-// One round, unless `least_steps` is changed.
-HuntOptions hunted(std::vector<ModuleUnderTest> subjects) {
-  HuntOptions options;
-  options.subjects = std::move(subjects);
-  options.least_steps = 1;
-  return options;
-}
-
-HuntOptions of_rate_unit() { return hunted({{"px4-v1.16.0", Module::rate_unit}}); }
-
-HuntRun found_by(const HuntOptions& options, const HostOptions& host) {
-  auto found = hunt(options, host);
-  EXPECT_TRUE(found) << found.error().to_string();
-  return found ? *std::move(found) : HuntRun();
-}
-
-std::vector<std::string> names_of(const HuntRun& run) {
-  std::vector<std::string> names;
-  for (const HuntFinding& finding : run.findings) names.push_back(finding.name);
-  return names;
-}
 
 std::optional<PortFault> unchanged(const ModuleUnderTest&, Trace&) { return std::nullopt; }
 
@@ -67,43 +44,6 @@ TEST(Hunt, RoundingIsNoFinding) {
   const HuntRun run = found_by(hunted(subjects), host);
   EXPECT_THAT(names_of(run), IsEmpty());
   EXPECT_GT(run.progress.steps, 5'000u);
-}
-
-TEST(Hunt, FindingsOfOneCauseAreOneFinding) {
-  const HuntRun run =
-      found_by(hunted({{"px4-v1.16.0", Module::rate_unit}, {"px4-v1.15.4", Module::rate_unit}}),
-               fault_host("cascade-d-reversed"));
-  ASSERT_THAT(names_of(run), ElementsAre("cascade_d_reversed"));
-  const HuntFinding& finding = run.findings.front();
-  EXPECT_GT(finding.trials, 3u);
-  EXPECT_LT(finding.trace.samples.size(), 8u);
-  // The port's answers end at the first deviation.
-  ASSERT_TRUE(finding.failure.first);
-  ASSERT_THAT(finding.got.samples, SizeIs(finding.failure.first->tick + 1));
-  EXPECT_EQ(value_of(channels()[finding.failure.first->channel], finding.got.samples.back()),
-            finding.failure.first->got);
-  EXPECT_EQ(finding.failure.verdict, Verdict::fail);
-  EXPECT_THAT(finding.toml, HasSubstr("Fill in"));
-}
-
-TEST(Hunt, TwoMistakesAreTwoFindings) {
-  const HuntRun run =
-      found_by(hunted({{"px4-v1.16.0", Module::rate_unit}, {"px4-v1.16.0", Module::attitude_unit}}),
-               fault_host("cascade-m-not-canonical+cascade-d-reversed"));
-  EXPECT_THAT(names_of(run), UnorderedElementsAre("cascade_d_reversed", "cascade_m_not_canonical"));
-}
-
-// A case of few ticks fits many faults, and the first of them is then a guess.
-TEST(Hunt, AFindingThatManyFaultsFitHasNoFault) {
-  HuntFinding finding;
-  EXPECT_EQ(fault_of(finding), nullptr);
-  EXPECT_EQ(fitting_faults(finding), 0u);
-  finding.diagnosis.emplace();
-  finding.diagnosis->suspects = {{faults::find_fault("cascade-d-reversed"), 2, 2, {}, 2}};
-  EXPECT_EQ(fault_of(finding), finding.diagnosis->suspects.front().fault);
-  finding.diagnosis->suspects.front().others = 3;
-  EXPECT_EQ(fault_of(finding), nullptr);
-  EXPECT_EQ(fitting_faults(finding), 4u);
 }
 
 // ---- the end ------------------------------------------------------------------------------------

@@ -4,7 +4,11 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
 
 #include "harness/diagnosis/hunt.hpp"
 #include "harness/golden/reference.hpp"
@@ -66,6 +70,28 @@ inline HostOptions fault_host(const std::string& faults) {
         return std::make_unique<InProcessHost>(*open_fault(faults));
       },
       [](const ModuleUnderTest&, Trace&) { return std::nullopt; });
+}
+
+// One round, unless `least_steps` is changed.
+inline HuntOptions hunted(std::vector<ModuleUnderTest> subjects) {
+  HuntOptions options;
+  options.subjects = std::move(subjects);
+  options.least_steps = 1;
+  return options;
+}
+
+inline HuntOptions of_rate_unit() { return hunted({{"px4-v1.16.0", Module::rate_unit}}); }
+
+inline HuntRun found_by(const HuntOptions& options, const HostOptions& host) {
+  auto found = hunt(options, host);
+  EXPECT_TRUE(found) << found.error().to_string();
+  return found ? *std::move(found) : HuntRun();
+}
+
+inline std::vector<std::string> names_of(const HuntRun& run) {
+  std::vector<std::string> names;
+  for (const HuntFinding& finding : run.findings) names.push_back(finding.name);
+  return names;
 }
 
 }  // namespace attest
