@@ -217,7 +217,7 @@ void add_of_parameters(const ModuleUnderTest& subject, const Adder& add) {
         });
     add.conditions.push_back(
         {fmt::format("{} is not {:g}", parameter.name, parameter.default_value),
-         [is_set](std::size_t, int) { return is_set; }, true});
+         [is_set](std::size_t, int) { return is_set; }, ConditionKind::parameter});
   }
 }
 
@@ -253,8 +253,12 @@ std::vector<Condition> conditions_of(const Trace& trace, const ModuleUnderTest& 
   add_of_torque(subject.module, add);
   add_of_parameters(subject, add);
   const ChannelSet inputs = channels_of(subject.module, "in/");
+  const std::size_t before = conditions.size();
   for (std::size_t i = 0; i < channels().size(); ++i) {
     if (inputs[i]) add_of_input(channels()[i], add);
+  }
+  for (std::size_t i = before; i < conditions.size(); ++i) {
+    conditions[i].kind = ConditionKind::input;
   }
   return conditions;
 }

@@ -1,6 +1,7 @@
 // The conditions that may separate the ticks at which a port deviates from the others.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -10,11 +11,15 @@
 
 namespace attest {
 
+// What a condition is about: the state of the law, such as an error, an input alone, or a
+// parameter, which is the same at all ticks of a vector. The later ones hold more often by chance.
+enum class ConditionKind : std::uint8_t { law, input, parameter };
+
 struct Condition {
   std::string text;  // "the tilt error exceeds 90 deg"
   // Whether it holds at a tick, for an output about `axis` (OutputsOf::axis).
   std::function<bool(std::size_t tick, int axis)> holds;
-  bool is_of_parameter = false;  // the same at all ticks of a vector
+  ConditionKind kind = ConditionKind::law;
 };
 
 // Those of the law come first, then those of the parameters of the trace, then those of each input.

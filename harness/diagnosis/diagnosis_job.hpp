@@ -45,7 +45,8 @@ struct DiagnosisVector {
 
 // Up to 240 vectors that failed with a deviation, then up to 120 that passed, spread over the
 // suite. One vector of each case, at the rate nearest to 250 Hz; of the same case in several
-// profiles, one that failed. Leaves out flights and long cases. Empty if no vector failed.
+// profiles, one that failed. Leaves out flights and long cases, and those with several instances if
+// the instances share state: another vector fails only after others. Empty if no vector failed.
 // REQUIRES: `cases` are those that were run, and outlive the result.
 std::vector<DiagnosisVector> diagnosis_vectors(const std::vector<SelectedCase>& cases,
                                                const std::vector<VectorResult>& results);

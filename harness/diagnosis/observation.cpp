@@ -208,7 +208,7 @@ Observation observe(const Trace& given, const Outputs& port, const Outputs& expe
         if (condition.holds(tick, output.axis)) count(output.deviates[tick], tally);
       }
       if (tally.deviating + tally.agreeing == 0) continue;
-      add_to(observed.where, {condition.text, tally, condition.is_of_parameter});
+      add_to(observed.where, {condition.text, tally, condition.kind});
     }
   }
   return observation;
@@ -220,7 +220,7 @@ nlohmann::json to_json(const Observation& observation) {
     nlohmann::json where = nlohmann::json::array();
     for (const Where& one : observed.where) {
       where.push_back(nlohmann::json::array(
-          {one.condition, one.tally.deviating, one.tally.agreeing, one.is_of_parameter}));
+          {one.condition, one.tally.deviating, one.tally.agreeing, static_cast<int>(one.kind)}));
     }
     const Relations& r = observed.relations;
     rows.push_back({static_cast<int>(of.stage), of.axis, observed.all.deviating,
@@ -241,7 +241,7 @@ Observation observation_from(const nlohmann::json& in) {
     for (const auto& one : row.at(4)) {
       observed.where.push_back({one.at(0).get<std::string>(),
                                 {one.at(1).get<std::size_t>(), one.at(2).get<std::size_t>()},
-                                one.at(3).get<bool>()});
+                                static_cast<ConditionKind>(one.at(3).get<int>())});
     }
     const auto& numbers = row.at(5);
     const auto count = [&](std::size_t i) { return numbers.at(i).get<std::size_t>(); };

@@ -13,6 +13,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "harness/diagnosis/conditions.hpp"
 #include "harness/diagnosis/similarity.hpp"
 
 namespace attest {
@@ -60,7 +61,7 @@ struct Relations {
 struct Where {
   std::string condition;  // "the tilt error exceeds 90 deg"
   Tally tally;
-  bool is_of_parameter = false;  // Condition::is_of_parameter
+  ConditionKind kind = ConditionKind::law;
 };
 
 struct Observed {

@@ -42,22 +42,30 @@ bool separates(const Where& where, const Tally& all) {
   if (share(outside, all.deviating + all.agreeing) < least_outside) return false;
   const bool holds_rarely = share(agreeing, all.agreeing) <= few_agreeing;
   const bool is_precise = share(deviating, deviating + agreeing) >= least_precision;
-  return where.is_of_parameter ? holds_rarely && is_precise : holds_rarely || is_precise;
+  switch (where.kind) {
+    case ConditionKind::law:
+      return true;
+    case ConditionKind::input:
+      return holds_rarely || is_precise;
+    case ConditionKind::parameter:
+      return holds_rarely && is_precise;
+  }
+  return false;
 }
 
-// The condition that separates best; empty if none does. `of_parameter`: only those of parameters,
-// or only others.
-std::string condition_in(const Observed& observed, bool of_parameter) {
-  std::string best;
+// Finds the condition that separates best. `of_parameter`: of those of parameters, or of the
+// others.
+void find_condition_in(const Observed& observed, bool of_parameter, Pattern& pattern) {
   double smallest = most_agreeing;
   for (const Where& one : observed.where) {
-    if (one.is_of_parameter != of_parameter || !separates(one, observed.all)) continue;
+    const bool is_of_parameter = one.kind == ConditionKind::parameter;
+    if (is_of_parameter != of_parameter || !separates(one, observed.all)) continue;
     const double agreeing = share(one.tally.agreeing, observed.all.agreeing);
     if (agreeing >= smallest - 1e-3) continue;
     smallest = agreeing;
-    best = one.condition;
+    pattern.condition = one.condition;
+    pattern.kind = one.kind;
   }
-  return best;
 }
 
 std::string relation_in(const Relations& r, Stage stage) {
@@ -104,11 +112,10 @@ using Vectors = std::vector<const ObservedVector*>;
 
 void find_condition(const Observed& observed, Pattern& pattern) {
   if (pattern.vectors < least_vectors) return;
-  pattern.condition = condition_in(observed, false);
+  find_condition_in(observed, false, pattern);
   if (!pattern.relation.empty() || !pattern.condition.empty()) return;
   if (pattern.vectors < least_vectors_of_parameter) return;
-  pattern.condition = condition_in(observed, true);
-  pattern.is_of_parameter = !pattern.condition.empty();
+  find_condition_in(observed, true, pattern);
 }
 
 // The pattern of vectors that deviate first in `stage`. Of the others, only vectors of the same
@@ -206,7 +213,7 @@ std::string Pattern::values() const {
 }
 
 bool Pattern::says_more() const {
-  return !relation.empty() || (!condition.empty() && !is_of_parameter);
+  return !relation.empty() || (!condition.empty() && kind != ConditionKind::parameter);
 }
 
 std::vector<Pattern> patterns_of(const std::vector<ObservedVector>& vectors) {
@@ -224,7 +231,7 @@ std::vector<Pattern> patterns_of(const std::vector<ObservedVector>& vectors) {
     add_patterns(first, of_stage, agreeing, patterns);
   }
   const auto order = [](const Pattern& one) {
-    return std::tuple(!one.says_more(), one.is_of_parameter,
+    return std::tuple(!one.says_more(), one.kind == ConditionKind::parameter,
                       -static_cast<std::ptrdiff_t>(one.vectors));
   };
   std::ranges::stable_sort(patterns, {}, order);

@@ -12,12 +12,12 @@ namespace attest {
 
 struct Pattern {
   Stage stage = Stage::input;
-  std::string axes;                 // "yaw", "roll and pitch"; empty: all, or without axes
-  std::string relation;             // "are those of the step before"; may be empty
-  std::string condition;            // "the tilt error exceeds 90 deg"; may be empty
-  bool is_of_parameter = false;     // the condition
-  std::size_t vectors = 0;          // failing vectors
-  std::vector<std::string> groups;  // of their cases
+  std::string axes;                         // "yaw", "roll and pitch"; empty: all, or without axes
+  std::string relation;                     // "are those of the step before"; may be empty
+  std::string condition;                    // "the tilt error exceeds 90 deg"; may be empty
+  ConditionKind kind = ConditionKind::law;  // of the condition
+  std::size_t vectors = 0;                  // failing vectors
+  std::vector<std::string> groups;          // of their cases
 
   // What the values do: "about yaw have the other sign, only where ...", or "deviate".
   std::string values() const;
@@ -38,8 +38,8 @@ struct ObservedVector {
 // relation.
 //
 // A condition needs two vectors. It must hold at nearly all values that deviate, and separate them
-// from the others. A condition of a parameter is the same in a whole vector, so it may hold by
-// chance: it is named only if it separates clearly, and there is nothing else to say.
+// from the others: the more clearly, the more often its kind holds by chance. A condition of a
+// parameter is named only if there is nothing else to say.
 //
 // Patterns with a relation or a condition of the law come before others, and those of more vectors
 // before those of fewer.

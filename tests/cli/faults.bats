@@ -99,6 +99,35 @@ assert report["diagnosis"]["patterns"][0]["stage"] == "attitude law"
 CHECK
 }
 
+# A port of the cascade with four mistakes in three stages.
+@test "mistakes of one stage and exchanged gains are each one line, and nothing is left" {
+  faults=cascade-i-without-dt+cascade-roll-pitch-gains+cascade-i-reversed+cascade-d-missing
+  run "$ATTEST" run --port "fault:$faults" --profile px4-v1.16.0 --rate 250 \
+    --group attitude,rates,i_factor,integral_limit,parameters
+  [ "$status" -eq 1 ]
+  for fault in ${faults//+/ }; do has "\`$fault\`: "; done
+  lacks "-of-roll"
+  lacks "-of-pitch"
+  lacks "do not explain"
+}
+
+# The port has rate gains that are 3% too low. It fails where a case sets them, which says nothing.
+@test "a parameter that the failing cases set is not named as the condition" {
+  run "$ATTEST" run --port "lib:$PORTS/port_gains_off.so" --rate 250 --profile px4-v1.5.5 \
+    --group rates,parameters,anti_windup --json report.json
+  [ "$status" -eq 1 ]
+  has "failing vectors deviate first in the rate law"
+  has "in the rate law: values about roll and pitch deviate"
+  lacks "only where MC_"
+  python3 - report.json <<'CHECK'
+import json, sys
+report = json.load(open(sys.argv[1]))
+found = report["diagnosis"]
+stages = {r["first"]["stage"] for r in report["results"] if "first" in r}
+assert stages == {p["stage"] for p in found["patterns"]} == set(found["first_stages"])
+CHECK
+}
+
 @test "a port that crashes is not diagnosed, and does not end the run" {
   run "$ATTEST" run --port "lib:$PORTS/port_crash.so" --rate 250 --group rates
   [ "$status" -eq 1 ]

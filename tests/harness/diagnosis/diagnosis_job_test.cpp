@@ -127,6 +127,24 @@ TEST_F(PortAnswerTest, DeviationsAreObservedIfRequested) {
   EXPECT_TRUE(compared(port).observation.empty());
 }
 
+// The integral deviates in the first step, and the controls one step later.
+TEST_F(PortAnswerTest, TheFirstDeviationHasTheStageThatReportsCount) {
+  const DiagnosisVector vector{&suite_[0], Rate::hz(250), true};
+  const auto answer = answer_to(vector, here("fault:i-without-dt+yaw-reversed"));
+  ASSERT_TRUE(answer && *answer);
+  const AnsweredVector answered{vector, std::make_shared<const Outputs>((*answer)->outputs)};
+  const auto first = [&](const Hypothesis& expected) {
+    return ComparisonJob(answered, {expected}, true).run(0).value();
+  };
+  EXPECT_EQ(first({}).similarity.stage, Stage::attitude_law);
+  EXPECT_EQ(first({}).first, (FirstStage{Stage::attitude_law, Stage::attitude_law}));
+  const VectorComparison left = first({faults::find_fault("yaw-reversed")});
+  EXPECT_EQ(left.first, (FirstStage{Stage::integrator, Stage::integrator}));
+  EXPECT_EQ(left.similarity.stage, Stage::attitude_law);
+  EXPECT_EQ(first({faults::find_fault("yaw-reversed"), faults::find_fault("i-without-dt")}).first,
+            std::nullopt);
+}
+
 // This case calls atan2 alone, whose results some libraries round correctly.
 TEST_F(PortAnswerTest, AtTheLevelExactTheCallsOfTheCLibraryAreTried) {
   const auto found = [&](const char* port, Level level) { return run(here(port), level).value(); };
@@ -211,7 +229,7 @@ TEST(DiagnosisCodec, AComparisonComesBackAsItWas) {
   sent.first = FirstStage{Stage::sticks, Stage::attitude_law};
   Observed& observed = sent.observation[{Stage::rate_law, 2}];
   observed.all = {3, 4};
-  observed.where = {{"it is the first step", {1, 2}, true}};
+  observed.where = {{"it is the first step", {1, 2}, ConditionKind::input}};
   observed.relations.values = 3;
   observed.relations.quotient_to = 0.25;
   const auto one = Codec<VectorComparison>::decode(Codec<VectorComparison>::encode(sent)).value();
@@ -233,7 +251,7 @@ TEST(DiagnosisCodec, AComparisonComesBackAsItWas) {
   ASSERT_THAT(back.where, SizeIs(1));
   EXPECT_EQ(back.where[0].condition, "it is the first step");
   EXPECT_EQ(back.where[0].tally.agreeing, 2u);
-  EXPECT_TRUE(back.where[0].is_of_parameter);
+  EXPECT_EQ(back.where[0].kind, ConditionKind::input);
   EXPECT_EQ(back.relations.values, 3u);
   EXPECT_EQ(back.relations.quotient_to, 0.25);
 }

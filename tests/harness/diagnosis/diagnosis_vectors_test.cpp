@@ -115,6 +115,19 @@ TEST_F(DiagnosisVectorsTest, FlightsAreLeftOut) {
   EXPECT_THAT(vectors(), IsEmpty());
 }
 
+TEST_F(DiagnosisVectorsTest, IfInstancesShareStateTheirCasesAreLeftOut) {
+  level_.group = "instances";
+  add_case("second", {3, Span::In::ticks});
+  add_result("second", 250, Verdict::fail);
+  EXPECT_THAT(ticks_of_vectors(), ElementsAre(3));
+  level_.group = "rates";
+  add_case("p", {4, Span::In::ticks});
+  add_result("p", 250, Verdict::fail);
+  EXPECT_THAT(ticks_of_vectors(), ElementsAre(3, 4));
+  results_.back().after = {"px4-v1.5.5/rates/d@250hz"};
+  EXPECT_THAT(ticks_of_vectors(), ElementsAre(4));
+}
+
 // Running the whole catalogue on a long case takes long.
 TEST_F(DiagnosisVectorsTest, LongCasesAreLeftOut) {
   add_case("long", {5000, Span::In::ticks});

@@ -97,27 +97,41 @@ TEST(Patterns, AConditionThatHoldsNearlyAlwaysSeparatesNothing) {
   EXPECT_EQ(patterns_of({one, one}).at(0).condition, tilted);
 }
 
+// An input that often has a value may have it by chance where values deviate.
+TEST(Patterns, AnInputMustSeparateMoreClearlyThanAStateOfTheLaw) {
+  const auto found = [](const char* text, ConditionKind kind, std::size_t agreeing) {
+    ObservedVector one = deviating("a", Stage::attitude_law, 0, {{text, {10, agreeing}, kind}});
+    one.observation.begin()->second.all = {10, 100};
+    return patterns_of({one, one}).at(0).condition;
+  };
+  EXPECT_EQ(found(tilted, ConditionKind::law, 20), tilted);
+  EXPECT_EQ(found(tilted, ConditionKind::law, 45), "");
+  EXPECT_EQ(found(landed, ConditionKind::input, 20), "");
+  EXPECT_EQ(found(landed, ConditionKind::input, 10), landed);
+}
+
 // A parameter is the same in a whole vector.
 TEST(Patterns, AParameterIsNamedOnlyIfThereIsNothingElse) {
   constexpr const char* parameter = "MC_ROLL_P is not 6.5";
-  const Where of_parameter{parameter, {10, 0}, true};
+  const Where of_parameter{parameter, {10, 0}, ConditionKind::parameter};
   const auto found = [&](std::vector<Where> where, std::size_t vectors, std::size_t late) {
     ObservedVector one = deviating("a", Stage::attitude_law, 0, std::move(where));
     one.observation.begin()->second.relations.late = late;
     return patterns_of(std::vector<ObservedVector>(vectors, one)).at(0);
   };
   EXPECT_EQ(found({of_parameter}, 3, 0).condition, parameter);
-  EXPECT_TRUE(found({of_parameter}, 3, 0).is_of_parameter);
+  EXPECT_EQ(found({of_parameter}, 3, 0).kind, ConditionKind::parameter);
   EXPECT_EQ(found({of_parameter}, 2, 0).condition, "");
   EXPECT_EQ(found({of_parameter}, 3, 10).condition, "") << "the relation says more";
   EXPECT_EQ(found({of_parameter, {landed, {10, 1}}}, 3, 0).condition, landed);
-  EXPECT_EQ(found({{parameter, {10, 2}, true}}, 3, 0).condition, "") << "it does not separate";
+  EXPECT_EQ(found({{parameter, {10, 2}, ConditionKind::parameter}}, 3, 0).condition, "")
+      << "it does not separate";
 }
 
 TEST(Patterns, ThoseThatSayMoreComeFirst) {
   const auto many = deviating("a", Stage::sticks, 0);
-  const auto by_parameter =
-      deviating("b", Stage::attitude_law, 0, {{"MC_ROLL_P is not 6.5", {10, 0}, true}});
+  const auto by_parameter = deviating(
+      "b", Stage::attitude_law, 0, {{"MC_ROLL_P is not 6.5", {10, 0}, ConditionKind::parameter}});
   ObservedVector late = deviating("c", Stage::rate_law, 0);
   late.observation.begin()->second.relations.late = 10;
   const auto found = patterns_of({by_parameter, by_parameter, by_parameter, many, many, late});
