@@ -141,11 +141,11 @@ std::vector<RunConfiguration> selected_configurations(const Case& the_case,
 struct Known {
   std::set<LoopRate> rates;
   std::set<std::string> profiles, groups, vehicles, plants;
-  std::vector<std::string> names;
-
+  std::vector<std::string> names;  // "roll_30", "attitude/roll_30", "attitude/*"
   void add(const Case& the_case) {
-    names.push_back(the_case.name);
-    groups.insert(the_case.group);
+    const std::string& group = the_case.group;
+    names.insert(names.end(), {the_case.name, group + "/" + the_case.name, group + "/*"});
+    groups.insert(group);
     profiles.insert(the_case.profiles.begin(), the_case.profiles.end());
     for (const RunConfiguration& configuration : the_case.configurations()) {
       rates.insert(configuration.rate);

@@ -205,6 +205,12 @@ int run_command_line(int argc, char** argv) {
                  "The port may read this file or folder although it is in the suite, which is "
                  "hidden from ports; may be given several times")
       ->type_name("PATH")
+      ->check([](const std::string& path) {
+        std::error_code failed;
+        return std::filesystem::exists(path, failed) || path.find(".zip/") != std::string::npos
+                   ? std::string()
+                   : fmt::format("there is no file or folder {}", path);
+      })
       ->allow_extra_args(false);
   app.add_flag("-q,--quiet", globals.quiet, "Print only failures and errors");
   Action action;

@@ -1,5 +1,6 @@
 #include "harness/cli/command.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -16,21 +17,49 @@ Option Option::required() const { return Option(*option_->required()); }
 Option Option::one_each_time() const { return Option(*option_->allow_extra_args(false)); }
 Option Option::separated_by_commas() const { return Option(*option_->delimiter(',')); }
 
+namespace {
+
+// Not the checks of CLI11, whose messages have the largest double with all its 309 digits. NaN and
+// infinity pass, because wrong_value() refuses them in all options.
+template <typename T, typename IsRight>
+CLI::Validator number_check(const std::string& name, const std::string& what, IsRight is_right) {
+  const auto wrong = [what, is_right](const std::string& given) {
+    T number{};
+    const bool is_number = CLI::detail::lexical_cast(given, number) &&
+                           (!std::isfinite(static_cast<double>(number)) || is_right(number));
+    return is_number ? std::string() : fmt::format("`{}` is no {}", given, what);
+  };
+  return {wrong, name};
+}
+
+}  // namespace
+
 Option Option::range(double least, double most) const {
-  return Option(*option_->check(CLI::Range(least, most)));
+  return Option(*option_->check(number_check<double>(
+      CLI::Range(least, most).get_description(), fmt::format("number from {} to {}", least, most),
+      [=](double number) { return number >= least && number <= most; })));
 }
 Option Option::range(int least, int most) const {
-  return Option(*option_->check(CLI::Range(least, most)));
+  return Option(*option_->check(
+      number_check<int>(CLI::Range(least, most).get_description(),
+                        fmt::format("whole number from {} to {}", least, most),
+                        [=](int number) { return number >= least && number <= most; })));
 }
-Option Option::at_least_zero() const { return Option(*option_->check(CLI::NonNegativeNumber)); }
-// Not CLI::PositiveNumber, whose message has the largest double with all its 309 digits.
+Option Option::at_least_zero() const {
+  return Option(*option_->check(number_check<double>("NONNEGATIVE", "number of at least 0",
+                                                     [](double number) { return number >= 0; })));
+}
 Option Option::positive() const {
-  const auto wrong = [](const std::string& given) {
-    double number = 0;
-    const bool is_positive = CLI::detail::lexical_cast(given, number) && number > 0;
-    return is_positive ? std::string() : fmt::format("`{}` is no number above 0", given);
-  };
-  return Option(*option_->check(CLI::Validator(wrong, "POSITIVE")));
+  return Option(*option_->check(number_check<double>("POSITIVE", "number above 0",
+                                                     [](double number) { return number > 0; })));
+}
+Option Option::whole() const {
+  // A minus would be taken as a very large number.
+  return check([](const std::string& given) {
+    const bool is_whole = !given.empty() && given.size() < 20 &&
+                          given.find_first_not_of("0123456789") == std::string::npos;
+    return is_whole ? std::string() : fmt::format("`{}` is no whole number of at least 0", given);
+  });
 }
 Option Option::one_of(const std::vector<std::string>& values) const {
   return Option(*option_->check(CLI::IsMember(values)));

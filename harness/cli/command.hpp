@@ -42,6 +42,7 @@ class Option {
   Option range(int least, int most) const;
   Option at_least_zero() const;
   Option positive() const;
+  Option whole() const;  // of a std::uint64_t: not negative
   Option one_of(const std::vector<std::string>& values) const;
   // `wrong` returns what is wrong with a value; empty: nothing.
   Option check(const std::function<std::string(const std::string&)>& wrong) const;

@@ -74,13 +74,9 @@ Result<Comparison> compare_ticks(const CompareOptions& options, const Tolerances
   return compare(**got, **want, tolerances);
 }
 
-// The time of --shift. For "auto": the estimated one, or 0 if it cannot be estimated.
-Result<std::int64_t> shift_of(const std::string& text, const TimedSignals& got,
-                              const TimedSignals& want) {
-  if (text == "auto") {
-    const auto estimated = estimate_shift(got, want);
-    return estimated ? estimated->us : 0;
-  }
+// The time of --shift; 0 for "auto".
+Result<std::int64_t> parse_shift(const std::string& text) {
+  if (text == "auto") return 0;
   std::int64_t us = 0;
   const char* const end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, us);
@@ -89,6 +85,14 @@ Result<std::int64_t> shift_of(const std::string& text, const TimedSignals& got,
   }
   if (error == std::errc{} && rest == end) return us;
   return fail(fmt::format("--shift {}: write a whole number of microseconds, or auto", text));
+}
+
+// For "auto": the estimated time, or 0 if it cannot be estimated.
+Result<std::int64_t> shift_of(const std::string& text, const TimedSignals& got,
+                              const TimedSignals& want) {
+  if (text != "auto") return parse_shift(text);
+  const auto estimated = estimate_shift(got, want);
+  return estimated ? estimated->us : 0;
 }
 
 std::string shift_text(std::int64_t shift_us) {
@@ -135,6 +139,7 @@ int compare_by_time(const CompareOptions& options, Level level, bool quiet) {
 int compare_command(const CompareOptions& options, const Globals& globals) {
   const auto level = parse_level(options.level);
   if (!level) return report_error(level.error());
+  if (auto shift = parse_shift(options.shift); !shift) return report_error(shift.error());
   const auto checked =
       check_outputs({options.html}, {"", {options.got, options.want}}, globals.suite);
   if (!checked) return report_error(checked.error());

@@ -276,6 +276,7 @@ void add_hunts(Command command, FaultOptions& options) {
   }
   command.option("--seed", options.seed, "Another seed makes other trials of the hunts")
       .type("N")
+      .whole()
       .shows_default()
       .needs(hunt);
 }

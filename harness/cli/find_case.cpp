@@ -26,7 +26,7 @@ void keep_law(const LoopRate& rate, std::vector<SelectedCase>& found) {
 Result<Case> find_case(const std::string& name, const SuiteFolder& suite,
                        const std::optional<LoopRate>& rate) {
   // A folder may have the name of a case by chance, so it is not a case file.
-  if (is_suite_file(name)) return parse_case(name);
+  if (is_suite_file(name) || name.ends_with(".toml")) return parse_case(name);
   Selection selection;
   selection.filters = {name};
   auto found = select_cases(suite.case_folders(), selection);

@@ -174,6 +174,7 @@ Result<void> check_files(const HuntCommandOptions& options, const Globals& globa
   for (const std::string& folder : {options.files.out, options.files.corpus}) {
     if (folder.empty()) continue;
     if (auto own = check_own_suite(folder); !own) return own;
+    if (auto usable = check_may_be_folder(folder); !usable) return usable;
   }
   return {};
 }
@@ -243,6 +244,7 @@ int hunt_command(const HuntCommandOptions& options, const Globals& globals) {
 void add_budget(Command command, HuntCommandOptions& options) {
   command.option("--seed", options.seed, "Another seed makes other trials")
       .type("N")
+      .whole()
       .shows_default();
   command
       .option("--steps", options.steps,

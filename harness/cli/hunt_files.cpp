@@ -40,13 +40,16 @@ std::string replay_command(const fs::path& trace, const HuntFinding& finding,
 
 }  // namespace
 
+Result<void> check_may_be_folder(const std::string& folder) {
+  std::error_code failed;
+  if (!fs::exists(folder, failed) || fs::is_directory(folder, failed)) return {};
+  return fail_at(folder, "is not a folder; name a folder, which need not exist");
+}
+
 Result<HuntCorpus> open_corpus(const std::string& root, const HuntOptions& hunt) {
   const fs::path folder = root, cases = folder / "cases";
   std::error_code failed;
   const bool exists = fs::exists(folder, failed);
-  if (exists && !fs::is_directory(folder, failed)) {
-    return fail_at(root, "is not a folder; --corpus names a folder, which need not exist");
-  }
   const bool is_suite = fs::exists(cases, failed) || fs::exists(folder / base_file, failed);
   if (exists && !is_suite && !fs::is_empty(folder, failed)) {
     return fail_at(root, "has files but no cases/, so it is no corpus; name another folder");

@@ -16,6 +16,9 @@ struct HuntFiles {
   std::vector<std::string> assumed;  // in the logs: assumption_words()
 };
 
+// Errors: the path is that of a file.
+Result<void> check_may_be_folder(const std::string& folder);
+
 // The corpus in the suite `root`, which is made if it does not exist. Errors: those of
 // HuntCorpus::open(); the folder has files, and is no suite.
 Result<HuntCorpus> open_corpus(const std::string& root, const HuntOptions& hunt);

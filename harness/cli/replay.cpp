@@ -127,6 +127,10 @@ class Replay {
   }
 
   Error nothing_compared() const {
+    // A law of one's own may have another name, but no port here has it.
+    if (!options_.profile.empty()) {
+      if (auto known = check_profiles({options_.profile}); !known) return known.error();
+    }
     std::set<std::string> profiles;
     for (const auto& entry : entries_) {
       if (const auto profile = entry.at("profile").get<std::string>(); find_profile(profile)) {

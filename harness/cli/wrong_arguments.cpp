@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/core/suggestion.hpp"
 
@@ -45,11 +46,46 @@ std::string unknown_option(const CLI::App& app, int argc, char** argv) {
   return "";
 }
 
+namespace {
+
+// "WANT and --rate": the required arguments and options that were not given.
+std::string missing_of(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    if (!option->get_required() || option->count() > 0) continue;
+    names.push_back(option->get_positional() ? option->get_type_name() : option->get_name());
+  }
+  return fmt::format("{}", fmt::join(names, " and "));
+}
+
+// What CLI11 reports, in our words.
+std::string reworded(const CLI::App& app, const CLI::ParseError& error) {
+  const std::string text = error.what();
+  const auto commands = app.get_subcommands();
+  const std::string missing = commands.empty() ? "" : missing_of(*commands.front());
+  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && !missing.empty()) {
+    return fmt::format("attest {} needs {}", commands.front()->get_name(), missing);
+  }
+  const std::size_t colon = text.find(": ");
+  if (colon == std::string::npos) return text;
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+    return fmt::format("too many arguments: `{}`", text.substr(colon + 2));
+  }
+  const std::string_view lacks_value = " missing";
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr &&
+      text.ends_with(lacks_value)) {
+    return fmt::format("{} needs a value", text.substr(0, colon));
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string wrong_usage(const CLI::App& app, const CLI::ParseError& error) {
   const auto commands = app.get_subcommands();
   const bool lacks_command = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
   if (commands.empty() && lacks_command) return "name a command; attest --help lists them";
-  return fmt::format("{}; attest {}--help describes the options", error.what(),
+  return fmt::format("{}; attest {}--help describes the options", reworded(app, error),
                      commands.empty() ? "" : commands.front()->get_name() + " ");
 }
 

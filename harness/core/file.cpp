@@ -19,28 +19,15 @@
 #include <unistd.h>
 
 #include "harness/core/interrupt.hpp"
+#include "harness/core/system_failure.hpp"
 
 namespace attest {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Names the limit that caused the error, because the system's message does not.
-std::string_view limit_of(int error) {
-  if (error == EFBIG) return " (`ulimit -f` limits the size of files)";
-  if (error == EMFILE) return " (`ulimit -n` limits how many are open)";
-  return "";
-}
-
-// REQUIRES: a system call has just failed and set errno.
-tl::unexpected<Error> system_failure(const fs::path& path, std::string_view what) {
-  const int error = errno;
-  const std::string reason = std::generic_category().message(error);
-  return fail_at(path.string(), fmt::format("{}: {}{}", what, reason, limit_of(error)));
-}
-
 std::string_view kind_of(mode_t mode) {
-  if (S_ISDIR(mode)) return "a directory";
+  if (S_ISDIR(mode)) return "a directory; name a file";
   if (S_ISFIFO(mode)) return "a pipe; write its content to a file first";
   if (S_ISSOCK(mode)) return "a socket";
   return "a device";
@@ -64,7 +51,7 @@ class Descriptor {
 Result<int> open_regular_file(const fs::path& path, struct stat& status) {
   // Without O_NONBLOCK, opening a pipe waits for a writer.
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-  if (file < 0) return system_failure(path, "cannot open the file");
+  if (file < 0) return cannot_open(path);
   if (::fstat(file, &status) != 0) {
     auto failure = system_failure(path, "cannot open the file");
     ::close(file);
@@ -277,7 +264,7 @@ Result<AtomicFile> AtomicFile::open_new(const fs::path& path, const fs::path& ta
   std::error_code ignored;
   const bool is_link = fs::is_symlink(fs::symlink_status(path, ignored));
   errno = why;
-  if (!is_link) return system_failure(path, "cannot create the file");
+  if (!is_link) return cannot_create(path);
   return system_failure(path, fmt::format("cannot create {}, to which it links", target.string()));
 }
 

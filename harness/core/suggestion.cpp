@@ -38,9 +38,10 @@ std::string suggestion(std::string_view unknown, const std::vector<std::string>&
   // A text of more than 200 bytes is not a misspelt name, but comes from a file of another kind.
   constexpr std::size_t longest_name = 200;
   if (unknown.size() > longest_name) return "";
-  for (const std::string& candidate : candidates) {  // v1.5.5 for px4-v1.5.5
+  for (const std::string& candidate : candidates) {  // v1.5.5 and 1.5.5 for px4-v1.5.5
     const bool is_end = !unknown.empty() && candidate.ends_with(unknown) && candidate != unknown;
-    if (is_end && candidate[candidate.size() - unknown.size() - 1] == '-') {
+    const bool lacks_v = !unknown.empty() && candidate.ends_with("-v" + std::string(unknown));
+    if (lacks_v || (is_end && candidate[candidate.size() - unknown.size() - 1] == '-')) {
       return fmt::format("; did you mean `{}`?", candidate);
     }
   }

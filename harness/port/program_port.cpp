@@ -188,7 +188,8 @@ Result<std::unique_ptr<Port>> open_program(const std::string& command) {
   if (!words) return tl::unexpected(words.error());
   if (!find_program(words->front())) {
     return fail_at(words->front(), words->front().find('/') == std::string::npos
-                                       ? "no program of this name is in PATH"
+                                       ? "no program of this name is in PATH; for a file in "
+                                         "this folder, write ./ before its name"
                                        : "is no file that may be executed (chmod +x)");
   }
   auto talk = Conversation::begin(*words);

@@ -1,5 +1,8 @@
 // `lib:PATH`: a shared library that exports attest_unit_v1().
+#include <array>
 #include <filesystem>
+#include <fstream>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -71,6 +74,16 @@ Result<void> check_table(const attest_unit* unit, const std::string& path) {
   return check_extensions(*unit, path);
 }
 
+bool is_elf(const std::string& path) {
+  constexpr std::string_view magic =
+      "\x7f"
+      "ELF";
+  std::array<char, magic.size()> begin{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(begin.data(), begin.size());
+  return std::string_view(begin.data(), begin.size()) == magic;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Port>> open_shared_library(const std::string& path) {
@@ -85,7 +98,8 @@ Result<std::unique_ptr<Port>> open_shared_library(const std::string& path) {
   const std::string absolute = std::filesystem::absolute(path).string();
   const auto library = DynamicLibrary::open(absolute);
   if (!library) {
-    return fail_at(path, fmt::format("cannot be loaded: {}", library.error().message));
+    return fail_at(path, fmt::format("cannot be loaded: {}{}", library.error().message,
+                                     is_elf(path) ? "" : "; build it with `cc -shared -fPIC`"));
   }
   void* symbol = library->find(symbol_name);
   if (!symbol) {

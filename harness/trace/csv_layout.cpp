@@ -63,7 +63,10 @@ Result<CsvLayout> layout_of(const CsvRows& rows, Module module, TraceNeed need) 
                            in_backquotes(name), name_of(module)));
       }
       if (!may_be_ignored(name, rows, meant, need)) {
-        return rows.fail_at_name(i, fmt::format("unknown column {}{}", in_backquotes(name), meant));
+        return rows.fail_at_name(
+            i, fmt::format("unknown column {}{}", in_backquotes(name),
+                           meant.empty() ? "; `attest list --channels` shows the columns of a trace"
+                                         : meant));
       }
       layout.columns.push_back(ignored_column);
       layout.ignored.emplace_back(name);

@@ -242,3 +242,45 @@ refused() {
   run "$ATTEST" plot missing.csv --html missing.csv
   has "would be overwritten"
 }
+
+# wrong MESSAGE ARGUMENTS: the command ends with this error and exit code 2.
+wrong() {
+  run "$ATTEST" "${@:2}"
+  [ "$status" -eq 2 ]
+  has "attest: error: $1"
+}
+
+@test "an error says what is wrong, where, and what to do" {
+  local missing="cannot open the file: No such file or directory"
+  mkdir folder
+  echo hello >text.csv
+  cp text.csv text.so
+  cp "$SOURCE/golden/recorded/px4-v1.5.5/fuzz_250hz.csv" good.csv
+  wrong "god.csv: $missing; did you mean \`good.csv\`?" replay god.csv
+  wrong "no/a.csv: $missing; there is no folder no" compare good.csv no/a.csv
+  wrong "flight.ulg: $missing; the path begins in $PWD" hunt --log flight.ulg
+  wrong "none.toml: $missing" sim none.toml
+  wrong "folder: not a regular file but a directory; name a file" plot folder
+  wrong "text.csv:1:1: unknown column \`hello\`; \`attest list --channels\` shows" replay text.csv
+  wrong "no/x.csv: cannot create the file: No such file or directory; make the folder no first" \
+    sim hover --out no/x.csv
+  wrong "no profile \`v1.5\`; did you mean \`px4-v1.5.5\`?" replay good.csv --profile v1.5
+  wrong "no cases of profile \`1.5.5\`; did you mean \`px4-v1.5.5\`?" run --profile 1.5.5
+  wrong "--within: \`-1\` is no number of at least 0; " replay good.csv --within -1
+  wrong "--at-least: \`2\` is no number from 0 to 1; " replay good.csv --at-least 2
+  wrong "--jobs: \`x\` is no whole number from 1 to 1024; " run --jobs x
+  wrong "--seed: \`-1\` is no whole number of at least 0; " hunt --seed -1
+  wrong "--shift abc: write a whole number of microseconds" compare good.csv good.csv --shift abc
+  wrong "no case matches \`atitude/*\`; did you mean \`attitude/*\`?" run --filter 'atitude/*'
+  wrong "no case matches \`rates/p_alon\`; did you mean \`rates/p_alone\`" run --filter rates/p_alon
+  wrong "too many arguments: \`two\`; attest run --help" run text.so two
+  wrong "--json needs a value; attest run --help" run --json
+  wrong "attest record needs CASE and --rate; attest record --help" record
+  wrong "text.csv: is not a folder; name a folder, which need not exist" hunt --out text.csv
+  wrong "--port-reads: there is no file or folder none" --port-reads none list
+  wrong "none: no program of this name is in PATH; for a file in this folder, write ./" \
+    run --port proc:none
+  run "$ATTEST" run --port lib:text.so
+  [ "$status" -eq 2 ]
+  has "file too short; build it with \`cc -shared -fPIC\`"
+}

@@ -269,7 +269,7 @@ CHECK
   done
   run "$ATTEST" compare a b --tolerance inf
   [ "$status" -eq 2 ]
-  has "--tolerance: Value inf not in range"
+  has "--tolerance: inf is not a finite number"
   run "$ATTEST" run --rate 250 --group rates --param MC_ROLLRATE_P=nan
   [ "$status" -eq 2 ]
   has "with a finite number"

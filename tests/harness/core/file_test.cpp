@@ -43,8 +43,16 @@ TEST(ReadFile, SaysWhyItCannot) {
   const std::string missing = (directory.path() / "missing").string();
   EXPECT_EQ(read_file(missing).error().to_string(),
             missing + ": cannot open the file: No such file or directory");
+  directory.write("flight.csv", "");
+  EXPECT_EQ(read_file(directory.path() / "fligth.csv").error().message,
+            "cannot open the file: No such file or directory; did you mean `flight.csv`?");
+  EXPECT_EQ(read_file(directory.path() / "missing/a.csv").error().message,
+            "cannot open the file: No such file or directory; there is no folder " + missing);
+  EXPECT_EQ(read_file("missing.csv").error().message,
+            "cannot open the file: No such file or directory; the path begins in " +
+                fs::current_path().string());
   EXPECT_EQ(read_file(directory.path()).error().to_string(),
-            directory.path().string() + ": not a regular file but a directory");
+            directory.path().string() + ": not a regular file but a directory; name a file");
 }
 
 TEST(ReadFile, RefusesWhatMayHaveNoEnd) {
@@ -280,7 +288,9 @@ TEST(AtomicFile, SaysAtOnceWhyItCannot) {
   EXPECT_EQ(AtomicFile::open(here + "/").error().to_string(),
             here + "/: not a file name; name a file");
   EXPECT_EQ(AtomicFile::open(here + "/no/a.csv").error().to_string(),
-            here + "/no/a.csv: cannot create the file: No such file or directory");
+            here +
+                "/no/a.csv: cannot create the file: No such file or directory; make the folder " +
+                here + "/no first");
 }
 
 // Root may write everywhere, so such a test runs as another user.

@@ -33,6 +33,7 @@ TEST(Suggestion, IsEmptyWhenNothingIsNear) {
 
 TEST(Suggestion, NamesACandidateOfWhichTheLastPartIsGiven) {
   EXPECT_EQ(suggestion("v1.5.5", {"px4-v1.3.4", "px4-v1.5.5"}), "; did you mean `px4-v1.5.5`?");
+  EXPECT_EQ(suggestion("1.5.5", {"px4-v1.3.4", "px4-v1.5.5"}), "; did you mean `px4-v1.5.5`?");
   EXPECT_EQ(suggestion("5", {"px4-v1.5.5"}), "");
 }
 

@@ -38,7 +38,7 @@ TEST_F(CsvErrors, UnreadableFile) {
             missing + ": cannot open the file: No such file or directory");
   const std::string here = directory_.path().string();
   EXPECT_EQ(read_csv(here, TraceNeed::inputs).error().to_string(),
-            here + ": not a regular file but a directory");
+            here + ": not a regular file but a directory; name a file");
 }
 
 TEST_F(CsvErrors, NoHeader) {

@@ -66,8 +66,8 @@ TEST_F(MixerCsv, NamesErrorsByPlace) {
             "6x.csv:1:1: unknown column `rolll` in a mixer trace; did you mean `roll`?");
   EXPECT_EQ(error_of("roll,pitch,roll\n"), "6x.csv:1:12: repeated column `roll`; remove one");
   EXPECT_EQ(error_of(""), "6x.csv:1:1: no header; the first line must name the columns");
-  EXPECT_EQ(read_csv("missing", TraceNeed::inputs).error().to_string(),
-            "missing: cannot open the file: No such file or directory");
+  EXPECT_EQ(read_csv("/missing", TraceNeed::inputs).error().to_string(),
+            "/missing: cannot open the file: No such file or directory");
 }
 
 TEST_F(MixerCsv, TruncationAtAnyByteReadsOrFails) {
