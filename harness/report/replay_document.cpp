@@ -111,7 +111,7 @@ std::string bars_of(const LogResult& result, const LogLimits& limits) {
 // The lines about the ticks of a unit of which the log has `logged`.
 void add_ticks(const LoggedUnit& unit, const TopicAgreement& topic, const LoggedOutput& logged,
                std::vector<Cell>& lines) {
-  lines.emplace_back(fmt::format("{}: {} of {} logged samples paired with a {}", topic.topic,
+  lines.emplace_back(fmt::format("{}: {} of {} logged samples paired with a {}", title_of(topic),
                                  logged.paired, logged.samples, unit.step_topic));
   if (topic.left_out == 0) return;
   lines.emplace_back(fmt::format(
@@ -196,13 +196,22 @@ std::string title_of(const LoggedUnit& log) {
   return fmt::format("{}: {}", log.trace.source, info_of(log.module).title);
 }
 
+const LoggedOutput& output_of(const LoggedUnit& unit, std::string_view topic) {
+  return *std::ranges::find(unit.outputs, topic, &LoggedOutput::topic);
+}
+
 std::vector<NotJudged> not_judged_in(const LoggedUnit& unit, const LogResult& result) {
   std::vector<NotJudged> found;
   for (std::size_t i = 0; i < result.topics.size(); ++i) {
     const TopicAgreement& topic = result.topics[i];
-    const bool is_published = result.single_steps || unit.outputs[i].samples > 0;
+    const bool is_published = result.single_steps || output_of(unit, topic.topic).samples > 0;
     if (!is_published || topic.not_judged.empty()) continue;
-    found.push_back({title_of(topic), topic.not_judged});
+    const bool is_in_part = !result.single_steps &&
+                            std::ranges::any_of(result.topics, [&](const TopicAgreement& other) {
+                              return other.topic == topic.topic && other.not_judged.empty();
+                            });
+    found.push_back({is_in_part ? fmt::format("the rest of {}", topic.topic) : title_of(topic),
+                     topic.not_judged});
   }
   if (result.single_steps) add_beyond_single_steps(unit, result, found);
   for (const std::string& topic : absent_topics(unit)) found.push_back({topic, "not in the log"});
@@ -223,9 +232,10 @@ DocumentTable unit_table(const LoggedUnit& unit, const LogResult& result, const 
       table.rows.push_back(row_of(topic, result.single_steps->logged, limits));
       table.below.emplace_back(title_of(topic));
     } else {
-      if (unit.outputs[i].samples == 0) continue;  // the unit never published it
-      table.rows.push_back(row_of(topic, unit.outputs[i].samples, limits));
-      add_ticks(unit, topic, unit.outputs[i], table.below);
+      const LoggedOutput& output = output_of(unit, topic.topic);
+      if (output.samples == 0) continue;  // the unit never published it
+      table.rows.push_back(row_of(topic, output.samples, limits));
+      add_ticks(unit, topic, output, table.below);
     }
     add_deviations(topic, limits, result.result.reason, table.below);
   }

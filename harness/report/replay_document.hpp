@@ -53,6 +53,9 @@ std::string not_judged_text(const std::vector<nlohmann::ordered_json>& entries);
 // "flight.ulg"; for a unit of v1.14 to v1.18 "flight.ulg: attitude unit".
 std::string title_of(const LoggedUnit& log);
 
+// The samples of the topic in the log. A topic may be judged in parts.
+const LoggedOutput& output_of(const LoggedUnit& unit, std::string_view topic);
+
 // The agreement of each topic of a unit. The lines below the table say how many of the deviations
 // are explained.
 DocumentTable unit_table(const LoggedUnit& unit, const LogResult& result, const LogLimits& limits);

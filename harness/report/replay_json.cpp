@@ -93,9 +93,9 @@ ordered_json json_of_unit(const FlightLog& log, const LoggedUnit& unit, const Lo
   for (std::size_t i = 0; i < result.topics.size(); ++i) {
     const TopicAgreement& topic = result.topics[i];
     entry["topics"].push_back(
-        result.single_steps
-            ? topic_of(topic, result.single_steps->logged, topic.paired, limits)
-            : topic_of(topic, unit.outputs[i].samples, unit.outputs[i].paired, limits));
+        result.single_steps ? topic_of(topic, result.single_steps->logged, topic.paired, limits)
+                            : topic_of(topic, output_of(unit, topic.topic).samples,
+                                       output_of(unit, topic.topic).paired, limits));
   }
   if (result.single_steps) entry["single_steps"] = json_of_steps(*result.single_steps);
   if (is_judged(result.result.verdict)) {

@@ -8,9 +8,11 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/golden/recorded.hpp"
 #include "harness/golden/reference.hpp"
+#include "harness/port/profiles.hpp"
 #include "harness/ulog/single_steps.hpp"
 #include "harness/verify/evaluate_single_steps.hpp"
 #include "harness/verify/judge.hpp"
@@ -51,6 +53,61 @@ std::vector<bool> ticks_but(const std::vector<LoggedSetpoint>& ticks, Known most
   std::vector<bool> leaves_out;
   for (const LoggedSetpoint& setpoint : ticks) leaves_out.push_back(setpoint.known > most);
   return leaves_out;
+}
+
+struct Axis {
+  const char* name;
+  const char* d_gain;
+  std::size_t control;
+};
+constexpr Axis axes[] = {
+    {"roll", "MC_ROLLRATE_D", 0}, {"pitch", "MC_PITCHRATE_D", 1}, {"yaw", "MC_YAWRATE_D", 2}};
+
+// The controls that depend on earlier steps by their integral only. Empty if each axis has a D
+// term.
+struct ControlsWithoutD {
+  ChannelSet channels;
+  std::string condition;
+
+  ControlsWithoutD(const LoggedUnit& log, const std::string& profile,
+                   const LogParameters& parameters) {
+    const ProfileInfo* const known = find_profile(profile);
+    if (log.module != Module::mc_att_control || !known) return;
+    channels = channels_of(log.module, "out/actuator_controls_0.") & log.trace.present;
+    std::vector<std::string> names;
+    for (const Axis& axis : axes) {
+      const bool has_d = any_is_set(axis.d_gain, *known, parameters.as_flown) ||
+                         any_is_set(axis.d_gain, *known, parameters.of_port);
+      const auto control = find_channel(
+          log.module, fmt::format("out/actuator_controls_0.control[{}]", axis.control));
+      if (has_d) channels.reset(*control);
+      if (!has_d && channels[*control]) names.emplace_back(axis.name);
+    }
+    if (names.empty()) channels.reset();
+    condition = fmt::format("{} and thrust, while the integrals are 0", fmt::join(names, ", "));
+  }
+
+  // Whether the parameter is not 0 at some time.
+  static bool any_is_set(std::string_view name, const ProfileInfo& profile,
+                         const std::vector<ParameterChange>& changes) {
+    float value = 0;
+    for (const Parameter& parameter : parameters_of(Module::mc_att_control, profile)) {
+      if (parameter.name == name) value = parameter.default_value;
+    }
+    bool any = false, begins = true;
+    for (const ParameterChange& change : changes) {
+      if (change.name != name) continue;
+      if (change.tick > 0 && begins) any = any || value != 0;
+      begins = false;
+      any = any || change.value != 0;
+    }
+    return begins ? value != 0 : any;
+  }
+};
+
+bool has_integral(const Sample& sample) {
+  const auto& status = sample.out.mc_att_ctrl_status;
+  return status.roll_rate_integ != 0 || status.pitch_rate_integ != 0 || status.yaw_rate_integ != 0;
 }
 
 // Finds out which outputs of a log can judge a port.
@@ -153,6 +210,10 @@ class LogJudge {
       for (TopicAgreement& topic : found.topics) topic.not_judged = comparable.why_not(topic);
       if (comparable.agrees_with_reference(memoryless)) break;
     }
+    const bool judges_alone = !log_.has_every_step && !found.topics.empty() && !alone_.empty() &&
+                              alone_of_reference_.front().paired >= least_steps &&
+                              alone_of_reference_.front().agrees(limits_);
+    if (judges_alone) found.topics.push_back(alone_.front());
     return {};
   }
 
@@ -165,6 +226,10 @@ class LogJudge {
     ReplayedPort reference(*host, subject_, parameters_.as_flown);
     ReplayedPort judged(port, subject_, parameters_.of_port);
     LogAgreement of_reference(log_.trace.present, limits_), of_port(log_.trace.present, limits_);
+    const ControlsWithoutD controls(log_, subject_.profile, parameters_);
+    LogAgreement reference_alone(controls.channels, limits_),
+        port_alone(controls.channels, limits_);
+    bool is_integrating = false;
     std::optional<PortFault> fault;
     bool fails = false;  // the reference
     found.got.samples.clear();
@@ -181,6 +246,13 @@ class LogJudge {
           const auto leaves_out = ticks_but(ticks_->setpoints(), most);
           if (has_reference_) of_reference.add(as_flown, logged, as_flown, leaves_out);
           of_port.add(got, logged, as_flown, leaves_out);
+          std::vector<bool> is_left_out = leaves_out;
+          for (std::size_t i = 0; i < is_left_out.size(); ++i) {
+            is_integrating = is_integrating || has_integral(as_flown.samples[i]);
+            if (is_integrating) is_left_out[i] = true;
+          }
+          reference_alone.add(as_flown, logged, as_flown, is_left_out);
+          port_alone.add(got, logged, as_flown, is_left_out);
           return true;
         });
     if (!ticks) return tl::unexpected(ticks.error());
@@ -195,6 +267,10 @@ class LogJudge {
     }
     found.result.ticks = *ticks;
     found.topics = of_port.finish();
+    alone_ = port_alone.finish();
+    alone_of_reference_ = reference_alone.finish();
+    for (TopicAgreement& topic : alone_) topic.condition = controls.condition;
+    if (!has_reference_) alone_.clear();
     return has_reference_ ? of_reference.finish() : std::vector<TopicAgreement>();
   }
 
@@ -208,7 +284,8 @@ class LogJudge {
   const LogLimits& limits_;
   std::size_t most_ticks_;
   const LogParameters& parameters_;
-  bool has_reference_ = true;  // it can answer
+  bool has_reference_ = true;                               // it can answer
+  std::vector<TopicAgreement> alone_, alone_of_reference_;  // ControlsWithoutD
 };
 
 std::string why_no_step(const SingleSteps& steps, const std::string& not_judged) {

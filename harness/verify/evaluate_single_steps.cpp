@@ -16,9 +16,6 @@
 namespace attest {
 namespace {
 
-// Fewer may agree by chance.
-constexpr std::size_t least_steps = 20;
-
 constexpr std::uint64_t any_age = std::numeric_limits<std::uint64_t>::max();
 
 // The outputs that the law computes from the inputs of the step alone.

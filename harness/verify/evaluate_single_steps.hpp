@@ -9,6 +9,9 @@
 
 namespace attest {
 
+// For a verdict. Fewer steps may agree by chance.
+inline constexpr std::size_t least_steps = 20;
+
 // Gives the single steps to the port and to the reference, and compares both with the log. Steps
 // with a setpoint older than the reference agrees with are left out. If the reference does not
 // agree at any age, another law flew, and nothing is judged. The steps with

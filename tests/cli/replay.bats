@@ -214,6 +214,24 @@ flight_log() {
   has "FAIL 0 of 1"
 }
 
+@test "controls without D term and integral are judged, also if the log lacks steps" {
+  "$ATTEST" record px4-v1.5.5/rates/p_alone --rate 250 --out whole.ulg
+  "$PYTHON" "$SOURCE/tests/cli/thin_log.py" whole.ulg thin.ulg
+  run "$ATTEST" replay thin.ulg --json r.json
+  [ "$status" -eq 0 ]
+  has "actuator_controls_0, roll, pitch, yaw and thrust, while the integrals are 0: 24 of 24 logged"
+  ends "PASS 1 of 1 traces and logs agree (builtin, numeric); not judged: the rest of actuator_*"
+  grep -q '"condition": "roll, pitch, yaw and thrust, while the integrals are 0"' r.json
+  run "$ATTEST" replay thin.ulg --port fault:gyro-yaw-reversed
+  [ "$status" -eq 1 ]
+  has "samples of actuator_controls_0 are wrong: the reference agrees with the log there"
+  # With a D term of yaw, only roll and pitch are known; with a thrust, integrals are not 0.
+  "$ATTEST" record px4-v1.5.5/rates/gains_differ_by_axis --rate 250 --out whole.ulg
+  "$PYTHON" "$SOURCE/tests/cli/thin_log.py" whole.ulg thin.ulg
+  run "$ATTEST" replay thin.ulg
+  lacks "while the integrals are 0"
+}
+
 @test "a long log is not in memory as a whole" {
   ! nm "$ATTEST" | grep -q __asan_init || skip "sanitizers need more memory"
   flight_log flight.ulg

@@ -60,12 +60,14 @@ TEST_F(CsvErrors, UnknownColumn) {
   EXPECT_EQ(error_of("timestamp,in/battery_status.skale\n"),
             "a.csv:1:11: unknown column `in/battery_status.skale`; did you mean "
             "`in/battery_status.scale`?");
-  EXPECT_EQ(error_of("timestamp,out/motors\n"), "a.csv:1:11: unknown column `out/motors`");
-  EXPECT_EQ(error_of("time,motors\n"), "a.csv:1:1: unknown column `time`");
-  EXPECT_EQ(error_of("timestamp,in/parameter.\n"), "a.csv:1:11: unknown column `in/parameter.`");
+  const std::string all = "; `attest list --channels` shows the columns of a trace";
+  EXPECT_EQ(error_of("timestamp,out/motors\n"), "a.csv:1:11: unknown column `out/motors`" + all);
+  EXPECT_EQ(error_of("time,motors\n"), "a.csv:1:1: unknown column `time`" + all);
+  EXPECT_EQ(error_of("timestamp,in/parameter.\n"),
+            "a.csv:1:11: unknown column `in/parameter.`" + all);
   // Places count characters, as editors do.
   EXPECT_EQ(error_of("in/parameter.\xC3\xA4\xC3\xB6\xC3\xBC,x\n"),
-            "a.csv:1:18: unknown column `x`");
+            "a.csv:1:18: unknown column `x`" + all);
 }
 
 TEST_F(CsvErrors, RepeatedColumn) {
