@@ -167,7 +167,9 @@ void add_schedule(const CommandLine& line) {
       line.add("schedule",
                "Simulate how other tasks delay the loop on one or two CPUs with fixed "
                "priorities, and fly with these delays");
-  command.option("tasks", options->tasks, "The task file, with [task.unit] and the other tasks")
+  command
+      .option("tasks", options->tasks,
+              "The task file, with [task.unit] and the other tasks; docs/timing.md has an example")
       .type("TASKS.toml")
       .required();
   command

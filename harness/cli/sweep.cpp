@@ -271,8 +271,10 @@ void add_sweep(const CommandLine& line) {
                "Fly a case many times with dispersed values, and estimate the probability "
                "that a flight holds each requirement");
   command
-      .option("file", options->file,
-              "The sweep file, with case, dispersions, design and requirements")
+      .option(
+          "file", options->file,
+          "The sweep file, with case, dispersions, design and requirements; docs/sweeps.md has an "
+          "example")
       .type("SWEEP.toml")
       .required();
   add_plant(command, options->vehicle, options->plant, "that of the file", "that of the file");

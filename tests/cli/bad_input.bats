@@ -276,6 +276,11 @@ wrong() {
   wrong "too many arguments: \`two\`; attest run --help" run text.so two
   wrong "--json needs a value; attest run --help" run --json
   wrong "attest record needs CASE and --rate; attest record --help" record
+  wrong "attest sweep needs SWEEP.toml and --out; attest sweep --help" sweep
+  for page in sweeps timing; do
+    { "$ATTEST" sweep --help && "$ATTEST" schedule --help; } | tr -s ' \n' ' ' >help.txt
+    grep -q "docs/$page.md has an example" help.txt
+  done
   wrong "text.csv: is not a folder; name a folder, which need not exist" hunt --out text.csv
   wrong "--port-reads: there is no file or folder none" --port-reads none list
   wrong "none: no program of this name is in PATH; for a file in this folder, write ./" \
