@@ -1,5 +1,6 @@
 #include "harness/cli/last_run.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
@@ -34,6 +35,8 @@ void remember_last_run(const RunResult& run) {
   const fs::path file = report_of_this_folder();
   if (file.empty()) return;
   std::error_code ignored;
+  const auto judged = [](const VectorResult& result) { return is_judged(result.verdict); };
+  if (std::ranges::none_of(run.results, judged)) return;  // a wrong profile, for example
   if (!run.failed()) {
     fs::remove(file, ignored);
     return;

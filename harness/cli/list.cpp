@@ -214,6 +214,9 @@ Result<void> extract(const ListOptions& options, const Globals& globals, const S
     return fail_at(suite.root.string(),
                    "is a folder already; --extract is for a suite in an archive");
   }
+  if (!options.select.selects_all()) {
+    return fail("--extract copies the whole suite; leave out the options that select cases");
+  }
   if (auto apart = check_output_folder(options.extract, globals.suite); !apart) return apart;
   const auto made = make_new_folder(options.extract, [&](const std::filesystem::path& folder) {
     return copy_suite_files(suite.root, folder);

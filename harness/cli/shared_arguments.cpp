@@ -140,7 +140,7 @@ void add_selection(Command command, SelectionOptions& options, Selects selects) 
       .rewritten(full_profile_name);
   add_rates(command, options.rates,
             with_flights ? "Only these loop rates [Hz], separated by commas; flights of v1.14 to "
-                           "v1.16 have pairs such as 250:1000"
+                           "v1.18 have pairs such as 250:1000"
                          : "Only these loop rates [Hz], separated by commas")
       .group(option_group::selection);
   command

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "harness/golden/reference.hpp"
 #include "harness/host/file_format.hpp"
 #include "harness/loop/case_timing.hpp"
+#include "harness/port/profiles.hpp"
 #include "harness/report/failure_text.hpp"
 #include "harness/report/flight_document.hpp"
 #include "harness/report/text.hpp"
@@ -138,6 +140,23 @@ Result<std::vector<SimulatedFlight>> fly_all(const Sim& sim, const HostOptions& 
   return flights;
 }
 
+// The flight of a bare name, such as `hover`, in the newest profile that the port supports and that
+// has it. Asks the port for every profile. Empty: the name has a profile, or there is none.
+std::optional<Sim> flight_of_port(const SimOptions& options, const Globals& globals) {
+  const bool is_bare = options.timing.empty() && options.rate.empty() &&
+                       options.case_name.find_first_of("/.*?[") == std::string::npos;
+  const auto suite = find_suite(globals.suite);
+  if (!is_bare || !suite) return std::nullopt;
+  const auto port = describe_port(options.host, known_profile_names());
+  if (!port) return std::nullopt;
+  for (const std::string& profile : port->profiles) {
+    SimOptions in_profile = options;
+    in_profile.case_name = fmt::format("{}/flight/{}", profile, options.case_name);
+    if (auto sim = prepare_case(in_profile, *suite)) return *std::move(sim);
+  }
+  return std::nullopt;
+}
+
 // The flights and their document.
 struct Simulation {
   std::vector<SimulatedFlight> flights;
@@ -215,52 +234,17 @@ void print(const VectorResult& result, const SimOptions& options, bool is_writte
   fmt::print(to, "{}", finding_text(result, Level::numeric));
 }
 
-// "1 of 3 metrics is out of its bounds: settles", or why the flight has no metrics.
-std::string metrics_sentence(const VectorResult& result) {
-  if (!result.reason.empty()) return one_line(result.reason);
-  std::vector<std::string> missed;
-  for (const MetricResult& metric : result.metrics) {
-    if (!metric.within()) missed.push_back(metric.name);
-  }
-  if (missed.empty()) return "the metrics are within their bounds";
-  return fmt::format("{} of {} {} out of {} bounds: {}", missed.size(),
-                     counted(result.metrics.size(), "metric"), missed.size() == 1 ? "is" : "are",
-                     missed.size() == 1 ? "its" : "their", fmt::join(missed, ", "));
-}
-
-// The last line. It names the flight whose verdict the document has. `is_reference`: the reference
-// flew, so there was no other flight to compare with.
-std::string verdict_line(const std::vector<SimulatedFlight>& flights, const Document& document,
-                         bool is_reference) {
-  const auto& shown = *std::ranges::find_if(flights, [&](const SimulatedFlight& flight) {
-    return flight.result.verdict == document.head.verdict;
-  });
-  std::string out =
-      fmt::format("{} {}", capitals(document.head.word), metrics_sentence(shown.result));
-  if (flights.size() > 1 && shown.result.verdict != Verdict::pass) {
-    out += fmt::format(" ({})", name_of(shown.result.plant_configuration->plant));
-  }
-  const auto deviates = [](const SimulatedFlight& flight) {
-    return flight.result.first.has_value();
-  };
-  const bool is_compared =
-      !is_reference && is_judged(shown.result.verdict) && shown.result.ticks > 0;
-  if (std::ranges::any_of(flights, deviates)) {
-    out += "; the outputs do not agree with the reference's, which `attest run` judges";
-  } else if (is_compared) {
-    out += "; the outputs agree with the reference's for the same inputs";
-  }
-  return out + "\n";
-}
-
 int sim_command(const SimOptions& options, const Globals& globals) {
   auto sim = prepare(options, globals);
   if (!sim) return report_error(sim.error());
   auto files = SimFiles::open(options);
   if (!files) return report_error(files.error());
   HostOptions host = options.host;
-  const auto port = prepare_port(host);
+  const auto port = prepare_port(host, {sim->the_case.profile});
   if (!port) return report_error(port.error());
+  if (port->profiles.empty() && port->hangs.empty() && port->goes_wrong.empty()) {
+    if (auto other = flight_of_port(options, globals)) sim = *std::move(other);
+  }
   const auto simulation = simulate(*sim, host, *port, !options.html.empty());
   if (!simulation) return report_error(simulation.error());
   const auto& [flights, document] = *simulation;
@@ -284,7 +268,7 @@ int sim_command(const SimOptions& options, const Globals& globals) {
     for (const DocumentTable& table : document.tables) fmt::print(to, "{}", render_text(table, {}));
   }
   if (any_shown && any_result) {
-    fmt::print(to, "{}", verdict_line(flights, document, host.port == HostOptions().port));
+    fmt::print(to, "{}\n", flight_conclusion(flights, document, host.port == HostOptions().port));
   }
   if (!any_result) {
     return report_error(

@@ -9,7 +9,8 @@
 namespace attest {
 namespace {
 
-// With fewer cases, a rate may be the only one that passes by chance.
+// With fewer cases, a rate may be the only one that passes by chance, or the cases of several
+// instances the only ones that fail, because of a mistake that others do not show.
 constexpr std::size_t least_cases = 3;
 
 bool is_of_instances(const VectorResult& result) { return result.group == "instances"; }
@@ -17,8 +18,10 @@ bool is_of_instances(const VectorResult& result) { return result.group == "insta
 bool failed(const VectorResult& result) { return fails_a_run(result.verdict); }
 
 void add_shared_state(const std::vector<VectorResult>& results, std::vector<std::string>& remarks) {
-  std::size_t failing = 0, of_instances = 0, after_others = 0;
+  std::size_t failing = 0, of_instances = 0, after_others = 0, others_passing = 0;
   for (const VectorResult& result : results) {
+    const bool passes_alone = result.verdict == Verdict::pass && !is_of_instances(result);
+    others_passing += passes_alone ? 1 : 0;
     if (!failed(result)) continue;
     ++failing;
     of_instances += is_of_instances(result) ? 1 : 0;
@@ -29,7 +32,7 @@ void add_shared_state(const std::vector<VectorResult>& results, std::vector<std:
         fmt::format("its instances share state, such as a static variable: {} of the failing "
                     "vectors pass when they run alone",
                     after_others));
-  } else if (failing > 0 && failing == of_instances) {
+  } else if (failing > 0 && failing == of_instances && others_passing >= least_cases) {
     remarks.emplace_back(
         "its instances share state, such as a static variable: only cases with several instances "
         "fail");

@@ -102,6 +102,17 @@ std::string suspect_text(const Suspect& suspect, bool in_part) {
   return out + fmt::format("      equally well: {}\n", fmt::join(others, ", "));
 }
 
+std::string patterns_text(const Diagnosis& diagnosis) {
+  std::string out;
+  for (const Pattern& pattern : diagnosis.patterns) {
+    out += fmt::format("  in the {}\n      in {} of the {} {}\n", pattern_text(pattern),
+                       counted(pattern.vectors, "failing vector"),
+                       pattern.groups.size() == 1 ? "group" : "groups",
+                       fmt::join(pattern.groups, ", "));
+  }
+  return out;
+}
+
 std::string suspects_text(const Diagnosis& diagnosis) {
   if (diagnosis.suspects.empty()) {
     if (diagnosis.failing == 0) return {};
@@ -110,13 +121,16 @@ std::string suspects_text(const Diagnosis& diagnosis) {
         diagnosis.in_first_stage, counted(diagnosis.failing, "failing vector"),
         name_of(diagnosis.first_stage.value_or(Stage::input)));
   }
-  std::string out = "it looks like:\n";
+  std::string out;
   for (const Suspect& suspect : diagnosis.suspects)
     out += suspect_text(suspect, diagnosis.unexplained > 0);
-  if (diagnosis.unexplained == 0) return out;
-  return out + fmt::format("{} of {} have deviations that {} not explain\n", diagnosis.unexplained,
-                           counted(diagnosis.failing, "failing vector"),
-                           diagnosis.suspects.size() == 1 ? "this does" : "these do");
+  return out;
+}
+
+// What more failing vectors have in common comes first.
+bool begins_with_patterns(const Diagnosis& diagnosis) {
+  return !diagnosis.patterns.empty() && !diagnosis.suspects.empty() &&
+         diagnosis.patterns.front().vectors > diagnosis.suspects.front().explained;
 }
 
 }  // namespace
@@ -188,12 +202,22 @@ std::string pattern_text(const Pattern& pattern) {
 }
 
 std::string mistakes_text(const Diagnosis& diagnosis) {
-  std::string out = suspects_text(diagnosis);
-  for (const Pattern& pattern : diagnosis.patterns) {
-    out += fmt::format("  in the {}\n      in {} of the {} {}\n", pattern_text(pattern),
-                       counted(pattern.vectors, "failing vector"),
-                       pattern.groups.size() == 1 ? "group" : "groups",
-                       fmt::join(pattern.groups, ", "));
+  const std::string suspects = suspects_text(diagnosis), patterns = patterns_text(diagnosis);
+  const auto left = [&](const char* unexplaining) {
+    return diagnosis.unexplained == 0
+               ? std::string()
+               : fmt::format("{} of {} have deviations that {} not explain\n",
+                             diagnosis.unexplained, counted(diagnosis.failing, "failing vector"),
+                             unexplaining);
+  };
+  std::string out;
+  if (diagnosis.suspects.empty()) {
+    out = suspects + patterns;
+  } else if (begins_with_patterns(diagnosis)) {
+    out = left("the faults of the catalogue do") + patterns + "in part it looks like:\n" + suspects;
+  } else {
+    out = "it looks like:\n" + suspects +
+          left(diagnosis.suspects.size() == 1 ? "this does" : "these do") + patterns;
   }
   for (const std::string& remark : diagnosis.remarks) out += remark + "\n";
   return out;

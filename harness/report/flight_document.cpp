@@ -11,6 +11,7 @@
 
 #include "harness/report/failure_text.hpp"
 #include "harness/report/flight_columns.hpp"
+#include "harness/report/text.hpp"
 
 namespace attest {
 namespace {
@@ -220,6 +221,46 @@ Document flight_document(const std::vector<SimulatedFlight>& flights, const Decl
   }
   document.groups = {plots_of(flown, background, missed_metrics(flights))};
   return document;
+}
+
+namespace {
+
+// "1 of 3 metrics is out of its bounds: settles", or why the flight has no metrics.
+std::string metrics_sentence(const VectorResult& result) {
+  if (!result.reason.empty()) return one_line(result.reason);
+  std::vector<std::string> missed;
+  for (const MetricResult& metric : result.metrics) {
+    if (!metric.within()) missed.push_back(metric.name);
+  }
+  if (missed.empty()) return "the metrics are within their bounds";
+  return fmt::format("{} of {} {} out of {} bounds: {}", missed.size(),
+                     counted(result.metrics.size(), "metric"), missed.size() == 1 ? "is" : "are",
+                     missed.size() == 1 ? "its" : "their", fmt::join(missed, ", "));
+}
+
+}  // namespace
+
+std::string flight_conclusion(const std::vector<SimulatedFlight>& flights, const Document& document,
+                              bool is_reference) {
+  const auto& shown = *std::ranges::find_if(flights, [&](const SimulatedFlight& flight) {
+    return flight.result.verdict == document.head.verdict;
+  });
+  std::string out =
+      fmt::format("{} {}", capitals(document.head.word), metrics_sentence(shown.result));
+  if (flights.size() > 1 && shown.result.verdict != Verdict::pass) {
+    out += fmt::format(" ({})", name_of(shown.result.plant_configuration->plant));
+  }
+  const auto deviates = [](const SimulatedFlight& flight) {
+    return flight.result.first.has_value();
+  };
+  const bool is_compared =
+      !is_reference && is_judged(shown.result.verdict) && shown.result.ticks > 0;
+  if (std::ranges::any_of(flights, deviates)) {
+    out += "; the outputs do not agree with the reference's, which `attest run` judges";
+  } else if (is_compared) {
+    out += "; the outputs agree with the reference's for the same inputs";
+  }
+  return out;
 }
 
 }  // namespace attest

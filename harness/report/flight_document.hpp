@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "harness/compare/metric.hpp"
@@ -51,5 +52,11 @@ std::vector<PlotBound> lines_of_bounds(const Metric& metric, const Plot& plot);
 // least one flight.
 Document flight_document(const std::vector<SimulatedFlight>& flights, const Declarations& port,
                          const FlightBackground& background = {});
+
+// "PASS the metrics are within their bounds; the outputs agree ..." It names the flight whose
+// verdict the document has. `is_reference`: the reference flew, so there was no other flight to
+// compare with. REQUIRES: a flight has that verdict.
+std::string flight_conclusion(const std::vector<SimulatedFlight>& flights, const Document& document,
+                              bool is_reference);
 
 }  // namespace attest

@@ -14,6 +14,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "harness/core/suite_files.hpp"
 #include "harness/report/accuracy.hpp"
 #include "harness/report/conclusion.hpp"
 #include "harness/report/document.hpp"
@@ -131,6 +132,15 @@ std::string failures(const RunResult& run, TerminalStyle style, const std::strin
     out += finding(findings[i], run, style, specific_case);
   }
   return out;
+}
+
+// How to read the files of the cases, if they are in an archive.
+std::string archive_note(const RunResult& run) {
+  if (run.case_files.empty()) return {};
+  const auto archive = archive_of(run.case_files.begin()->second);
+  if (archive.empty()) return {};
+  return fmt::format("the files of the cases are in {}; to copy them: attest list --extract DIR\n",
+                     archive.string());
 }
 
 std::string_view plural_of(Quantity quantity) {
@@ -312,6 +322,7 @@ std::string render_summary(const RunResult& run, double wall_s, TerminalStyle st
   if (verbose) out += accuracy(run, style);
   if (verbose || !run.failed()) out += headroom(run);
   out += failures(run, style, diagnosis ? diagnosis->specific_case : "", verbose);
+  if (run.failed()) out += archive_note(run);
   out += errors(run, style);
   out += failed_cases(run);
   if (const std::string stages = first_stages(run); !stages.empty()) out += stages + "\n";

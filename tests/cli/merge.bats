@@ -218,6 +218,9 @@ refused() {
   has "no vector failed in the last \`attest run\` in this folder"
   run "$ATTEST" run "${selected[@]}" --port fault:tpa-missing
   failed=$(grep -oE 'FAIL [0-9]+ of' <<<"$output")
+  # A run that judged nothing is no last run.
+  run "$ATTEST" run --profile v1.5.5 --rate 250 --port "lib:$PORTS/port_other_profiles.so"
+  [ "$status" -eq 2 ]
   run "$ATTEST" run --last-failed --port fault:tpa-missing
   [ "$status" -eq 1 ]
   has "$failed ${failed//[^0-9]/} vectors failed, 0 passed"

@@ -90,11 +90,11 @@ made() {
   has "note: python3 is not installed; mine/packages.txt names its package"
   PATH=$PWD/bin run mine/check
   [ "$status" -eq 2 ]
-  has "check: python3 is missing: install it"
+  has "check: python3 is missing: change PATH, or install it"
   PATH=$PWD/bin run "$ATTEST" new-port laws --lang octave
   [ "$status" -eq 0 ]
   has "note: octave-cli is not installed; laws/packages.txt names its package"
   PATH=$PWD/bin run laws/check
   [ "$status" -eq 2 ]
-  has "check: octave-cli is missing: install it"
+  has "check: octave-cli is missing: change PATH, or install it"
 }

@@ -328,6 +328,12 @@ not px4-v1.5.5; write: attest run --profile px4-v1.18 --port $port"
   command=$(sed -n 's/.*; write: attest //p' <<<"$output")
   run "$ATTEST" $command --filter 'rates/p_alone@250hz'
   [ "$status" -eq 0 ]
+  run "$ATTEST" sim hover "$port"
+  [ "$status" -eq 0 ]
+  has "px4-v1.18/flight/hover@250-1000hz"
+  run "$ATTEST" sim hover --rate 250 --port "$port"
+  [ "$status" -eq 2 ]
+  has "write: attest sim px4-v1.18/flight/hover --rate 250:1000 --port $port"
   for command in "hunt --profile v1.5.5" "time --profile v1.5.5 --rate 250" \
     "record px4-v1.5.5/rates/p_alone --rate 250"; do
     run "$ATTEST" $command --port "$port"

@@ -7,14 +7,14 @@ attest=$INSTALLED/bin/attest
 suite=$INSTALLED/share/attest/suite.zip
 
 # same STATUS COMMAND...: exits with it, and has the same output, with the archive and with the
-# folder of the source tree.
+# folder of the source tree. Only a report of failures adds where the archive is.
 same() {
   local times='s/ in [0-9.]* s$//' wanted=$1
   shift
   echo "$*"
   run "$attest" "$@"
   [ "$status" -eq "$wanted" ]
-  sed "s|$suite|SUITE|g; $times" <<<"$output" >of_archive
+  sed "s|$suite|SUITE|g; $times; /^the files of the cases are in SUITE;/d" <<<"$output" >of_archive
   ATTEST_SUITE=$SOURCE run "$attest" "$@"
   [ "$status" -eq "$wanted" ]
   sed "s|$SOURCE|SUITE|g; $times" <<<"$output" >of_folder
@@ -39,6 +39,9 @@ same() {
   [ "$status" -eq 0 ]
   run "$attest" sim "$suite/cases/px4-v1.5.5/flight/none.toml"
   [ "$status" -eq 2 ]
+  run "$attest" run --port fault:tpa-missing --filter 'px4-v1.5.5/tpa/*@250hz'
+  [ "$status" -eq 1 ]
+  has "the files of the cases are in $suite; to copy them: attest list --extract DIR"
 }
 
 @test "the archive depends on names and bytes of the files alone" {
@@ -71,6 +74,9 @@ same() {
   has "files: is in a suite"
   run "$attest" list --extract more --parameters
   [ "$status" -eq 2 ]
+  run "$attest" list --extract more --group rates
+  [ "$status" -eq 2 ]
+  has "--extract copies the whole suite; leave out the options that select cases"
   [ ! -e more ]
   run "$attest" --suite files list --extract other
   [ "$status" -eq 2 ]

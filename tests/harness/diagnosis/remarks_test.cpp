@@ -26,8 +26,12 @@ TEST(Remarks, AboutAPortThatPassesThereAreNone) {
 }
 
 TEST(Remarks, OnlyCasesOfInstancesFail) {
-  std::vector<VectorResult> results{result("instances", "two", 250, Verdict::fail),
-                                    result("rates", "p", 250, Verdict::pass)};
+  std::vector<VectorResult> results{result("instances", "two", 250, Verdict::fail)};
+  EXPECT_THAT(remarks_on(results), IsEmpty()) << "no other case was selected";
+  for (const char* const name : {"p", "i", "d"}) {
+    EXPECT_THAT(remarks_on(results), IsEmpty());
+    results.push_back(result("rates", name, 250, Verdict::pass));
+  }
   EXPECT_THAT(remarks_on(results), ElementsAre(HasSubstr("its instances share state")));
   results[1].verdict = Verdict::fail;
   EXPECT_THAT(remarks_on(results), IsEmpty());

@@ -54,6 +54,23 @@ TEST(DiagnosisText, ListsEachMistakeAndWhatNoneExplains) {
   EXPECT_THAT(html_report({sample_run(), diagnosis, {}}), HasSubstr("the vehicle &lt;lands&gt;"));
 }
 
+TEST(DiagnosisText, BeginsWithWhatMoreVectorsHaveInCommon) {
+  Diagnosis diagnosis = unlike_every_fault();
+  diagnosis.suspects = {{faults::find_fault("yaw-reversed"), 1, 9, {}}};
+  diagnosis.unexplained = 9;
+  Pattern pattern;
+  pattern.stage = Stage::integrator;
+  pattern.vectors = 8;
+  pattern.groups = {"saturation"};
+  diagnosis.patterns = {pattern};
+  EXPECT_THAT(diagnosis_text(diagnosis),
+              testing::StartsWith("9 of 9 failing vectors have deviations that the faults of the "
+                                  "catalogue do not explain\n"
+                                  "  in the integrator: values deviate\n"
+                                  "      in 8 failing vectors of the group saturation\n"
+                                  "in part it looks like:\n  `yaw-reversed`: "));
+}
+
 TEST(DiagnosisText, OfAnUnknownMistakeHasWhatItsDeviationsHaveInCommon) {
   Diagnosis diagnosis = unlike_every_fault();
   Pattern pattern;
