@@ -58,7 +58,7 @@ template <typename R>
 struct JobOptions {
   int processes = 1;
   bool in_process = false;  // for a debugger: jobs run one after the other in this process
-  bool fail_fast = false;   // leave out all jobs after the first one that fails or has an error
+  bool fail_fast = false;   // leave out all after the first result that fails, and after an error
   std::function<void(const R&)> on_result = [](const R&) {};
   std::function<bool(const R&)> fails = [](const R&) { return false; };
   std::function<bool()> stop = [] { return false; };  // true: end soon, results are not needed
@@ -73,19 +73,28 @@ struct JobResults {
 
 namespace detail {
 
-// Calls `done` with each result and the number of tasks that it is for.
+// Calls `done` with each result and the number of tasks that it is for. If `done` returns false,
+// the tasks that are left have an error together.
 template <typename R, typename Done>
 void run_tasks(Job<R>& job, Done&& done) {
+  const auto leave_out_from = [&](std::size_t task, const Error& error) {
+    job.close();
+    if (task < job.size()) done(Result<R>(tl::unexpected(error)), job.size() - task);
+  };
   for (std::size_t task = 0; task < job.size();) {
-    if (const auto opened = job.open(); !opened) {
-      job.close();
-      return done(Result<R>(tl::unexpected(opened.error())), job.size() - task);
-    }
+    if (const auto opened = job.open(); !opened) return leave_out_from(task, opened.error());
     do {
-      done(job.run(task), 1);
-    } while (++task < job.size() && !job.is_spent());
+      const bool goes_on = done(job.run(task), 1);
+      if (++task; !goes_on) return leave_out_from(task, {"left out after a failure"});
+    } while (task < job.size() && !job.is_spent());
     job.close();
   }
+}
+
+// False: nothing after this result is needed.
+template <typename R>
+bool goes_on_after(const Result<R>& result, const JobOptions<R>& options) {
+  return !options.fail_fast || (result && !options.fails(*result));
 }
 
 // Collects the results of the jobs.
@@ -94,27 +103,31 @@ class Collector {
  public:
   Collector(std::size_t jobs, const JobOptions<R>& options) : options_(options), of_jobs_(jobs) {}
 
-  // fail() and take() return false if the jobs after `job` are not needed. An error that several
-  // tasks in a row have is kept once.
-  bool fail(std::size_t job, const Error& error) {
-    std::vector<Error>& errors = of_jobs_[job].errors;
-    if (errors.empty() || errors.back().to_string() != error.to_string()) errors.push_back(error);
-    return !options_.fail_fast;
-  }
+  // fail() and take() return false if the rest of `job` and the jobs after it are not needed. What
+  // then comes of `job` is left out. An error that several tasks in a row have is kept once.
+  bool fail(std::size_t job, const Error& error) { return take(job, tl::unexpected(error)); }
   bool take(std::size_t job, Result<R> result) {
-    if (!result) return fail(job, result.error());
     Each& each = of_jobs_[job];
-    options_.on_result(*result);
-    const bool fails = options_.fails(*result);
-    each.results.push_back(*std::move(result));
-    return !(options_.fail_fast && fails);
+    if (each.is_over) {
+      leaves_out_ = true;
+      return false;
+    }
+    each.is_over = !goes_on_after(result, options_);
+    if (result) {
+      options_.on_result(*result);
+      each.results.push_back(*std::move(result));
+    } else if (each.errors.empty() ||
+               each.errors.back().to_string() != result.error().to_string()) {
+      each.errors.push_back(result.error());
+    }
+    return !each.is_over;
   }
 
   JobResults<R> finish(std::size_t end) {
     JobResults<R> all;
-    all.stopped_early = end < of_jobs_.size();
+    all.stopped_early = leaves_out_ || end < of_jobs_.size();
     for (std::size_t i = 0; i < end; ++i) {
-      auto& [results, errors] = of_jobs_[i];
+      auto& [results, errors, is_over] = of_jobs_[i];
       std::move(results.begin(), results.end(), std::back_inserter(all.results));
       std::move(errors.begin(), errors.end(), std::back_inserter(all.errors));
     }
@@ -125,9 +138,11 @@ class Collector {
   struct Each {
     std::vector<R> results;
     std::vector<Error> errors;
+    bool is_over = false;
   };
   const JobOptions<R>& options_;
   std::vector<Each> of_jobs_;
+  bool leaves_out_ = false;
 };
 
 template <typename R>
@@ -136,7 +151,7 @@ JobResults<R> run_here(const Jobs<R>& jobs, const JobOptions<R>& options) {
   std::size_t end = 0;
   for (bool goes_on = true; goes_on && end < jobs.size() && !options.stop(); ++end) {
     run_tasks(*jobs[end], [&](Result<R> result, std::size_t) {
-      goes_on = collector.take(end, std::move(result)) && goes_on;
+      return goes_on = collector.take(end, std::move(result)) && goes_on;
     });
   }
   return collector.finish(end);
@@ -150,9 +165,10 @@ JobResults<R> run_jobs(const Jobs<R>& jobs, const JobOptions<R>& options) {
   std::vector<Work> work;
   for (const auto& job : jobs) {
     work.push_back({job->size(), [&job] { return job->begin_worker(); },
-                    [&job](const Work::Done& done) {
+                    [&job, &options](const Work::Done& done) {
                       detail::run_tasks(*job, [&](const Result<R>& result, std::size_t tasks) {
                         done(Codec<R>::encode(result), tasks);
+                        return detail::goes_on_after(result, options);
                       });
                     },
                     [&job] { return job->ends_worker(); }});

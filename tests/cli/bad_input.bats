@@ -217,7 +217,7 @@ refused() {
   make_suite
   sed -i 's/duration_ticks = 30/duration_s = 120/; s/end_ticks = 25/end_s = 1/' \
     suite/cases/px4-v1.5.5/attitude/roll.toml
-  run bash -c "ulimit -v 500000; exec \"$ATTEST\" --suite suite record roll --rate 8000 --out x.csv"
+  run bash -c "ulimit -v 300000; exec \"$ATTEST\" --suite suite record roll --rate 8000 --out x.csv"
   [ "$status" -eq 2 ]
   [ "$output" = "attest: error: out of memory; \`ulimit -v\` or the machine limits it" ]
 }

@@ -33,7 +33,7 @@ is_no_conformance() {
 @test "an answer cannot have a fault that only the judge finds" {
   judged unanswered
   [ "$status" -eq 1 ]
-  has "7 protocol"
+  has "8 protocol"
   lacks " skip"
   is_no_conformance
 }

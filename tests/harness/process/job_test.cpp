@@ -239,8 +239,8 @@ TEST(Jobs, AWorkerThatEndsWithoutAnAnswerIsAnError) {
   EXPECT_EQ(outcome.errors.size(), 1u);
 }
 
-TEST(Jobs, FailFastEndsWithTheFirstJobThatFailsInTheirOrder) {
-  const auto jobs = jobs_of({{slowly("good")}, {slowly("bad")}, {says("bad")}, {says("good")}});
+TEST(Jobs, FailFastEndsWithTheFirstResultThatFailsInTheirOrder) {
+  const auto jobs = jobs_of({{slowly("good")}, {slowly("bad"), says("good")}, {says("bad")}});
   for (auto options : {with(1), with(4), in_process()}) {
     options.fail_fast = true;
     options.fails = [](const std::string& result) { return result == "bad"; };
@@ -250,8 +250,19 @@ TEST(Jobs, FailFastEndsWithTheFirstJobThatFailsInTheirOrder) {
   }
 }
 
-TEST(Jobs, AFailureInTheLastJobStopsNothing) {
-  const auto jobs = jobs_of({{says("good")}, {says("bad"), says("good")}});
+TEST(Jobs, FailFastDoesNotRunTheRestOfAJob) {
+  const Task ends = []() -> Result<std::string> { ::_exit(EXIT_FAILURE); };
+  JobOptions<std::string> options = with(1);
+  options.fail_fast = true;
+  options.fails = [](const std::string& result) { return result == "bad"; };
+  const auto outcome = run_jobs(jobs_of({{says("good"), says("bad"), ends}}), options);
+  EXPECT_THAT(outcome.results, ElementsAre("good", "bad"));
+  EXPECT_THAT(outcome.errors, IsEmpty());
+  EXPECT_TRUE(outcome.stopped_early);
+}
+
+TEST(Jobs, AFailureAtTheEndStopsNothing) {
+  const auto jobs = jobs_of({{says("good")}, {says("good"), says("bad")}});
   for (auto options : {with(2), in_process()}) {
     options.fail_fast = true;
     options.fails = [](const std::string& result) { return result == "bad"; };
