@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures how the diagnosis names the mistakes of ports that have several: `several.py ATTEST`.
 
-A file of the folder `several` is a starter with three to six mistakes, invented from the law
+A file of the folder `several` is a starter with three to nine mistakes, invented from the law
 without the catalogue of faults. `names` are the faults of the catalogue that are the same mistake;
 none if the catalogue has no such fault. Each port is run once, at 250 Hz in its profile.
 
