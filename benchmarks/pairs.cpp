@@ -98,10 +98,11 @@ bool run_alternating(const std::string& filter, PairReporter& reporter) {
   return !wanted.empty();
 }
 
+// They are measured in this order. Isolation is the first, because a fork costs more when other
+// benchmarks have left memory in this process.
 const std::vector<Pair>& pairs() {
   constexpr const char* unbounded = "no bound: the C library's is not correctly rounded";
   static const std::vector<Pair> list = {
-      // First, because a fork costs more when other benchmarks have left memory in this process.
       {"suite at 250 Hz, CPU time, port in a process of its own", "suite/port_isolated",
        "suite/port_shared", 1.30, "at most 1.30x the port in the judge's process"},
       {"controller step", "step/reference", "step/by_hand", 1.15,
