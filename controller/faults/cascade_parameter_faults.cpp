@@ -11,7 +11,6 @@ namespace {
 
 using P = CascadeParameters;
 
-// One parameter always has `value`, its default.
 template <float P::*member>
 void keep_at(FaultyLaw& law, float value) {
   const auto change = [value](P& p) { p.*member = value; };
@@ -19,14 +18,32 @@ void keep_at(FaultyLaw& law, float value) {
   change_parameters(law.rate_unit, change);
 }
 
+// The default parameters of the unit's profile, which is known when the unit is made.
+template <typename Unit>
+std::shared_ptr<const P> defaults_of(Unit& unit, cascade::ParameterTable table) {
+  auto defaults = std::make_shared<P>();
+  unit.step.traits = [defaults, table, then = unit.step.traits](cascade::Profile profile) {
+    *defaults = default_parameters(table, profile);
+    return then(profile);
+  };
+  return defaults;
+}
+
+// One parameter always has its default.
+template <float P::*member>
+void keep_default(FaultyLaw& law) {
+  const auto keep = [](auto& unit, cascade::ParameterTable table) {
+    change_parameters(
+        unit, [defaults = defaults_of(unit, table)](P& p) { p.*member = (*defaults).*member; });
+  };
+  keep(law.attitude_unit, cascade::attitude_parameters());
+  keep(law.rate_unit, cascade::rate_parameters());
+}
+
 // One parameter has another default. A value that was set to the default is changed, too.
 template <float P::*member>
 void change_default(FaultyLaw& law, float other) {
-  auto defaults = std::make_shared<P>();
-  law.attitude_unit.step.traits = [defaults](cascade::Profile profile) {
-    *defaults = default_parameters(cascade::attitude_parameters(), profile);
-    return AttitudeStepStages::Law::traits(profile);
-  };
+  const auto defaults = defaults_of(law.attitude_unit, cascade::attitude_parameters());
   change_parameters(law.attitude_unit, [defaults, other](P& p) {
     if (p.*member == (*defaults).*member) p.*member = other;
   });
@@ -94,28 +111,26 @@ const Fault parameter_list[] = {
      "reads MC_YAWRATE_MAX instead of MPC_MAN_Y_MAX", "the yaw stick", wrong_name,
      read_from<&P::mpc_man_y_max, &P::mc_yawrate_max>},
     {"cascade-roll-p-not-read", "parameters", Stage::parameters, "does not read MC_ROLL_P",
-     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mc_roll_p>(law, 6.5f); }},
+     "another value", not_read, keep_default<&P::mc_roll_p>},
     {"cascade-yaw-p-not-read", "parameters", Stage::parameters, "does not read MC_YAW_P",
-     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mc_yaw_p>(law, 2.8f); }},
+     "another value", not_read, keep_default<&P::mc_yaw_p>},
     {"cascade-yaw-weight-not-read", "parameters", Stage::parameters, "does not read MC_YAW_WEIGHT",
-     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mc_yaw_weight>(law, 0.4f); }},
+     "another value", not_read, keep_default<&P::mc_yaw_weight>},
     {"cascade-rollrate-max-not-read", "parameters", Stage::parameters,
-     "does not read MC_ROLLRATE_MAX", "another value", not_read,
-     [](FaultyLaw& law) { keep_at<&P::mc_rollrate_max>(law, 220.0f); }},
+     "does not read MC_ROLLRATE_MAX", "another value", not_read, keep_default<&P::mc_rollrate_max>},
     {"cascade-yawrate-max-not-read", "parameters", Stage::parameters,
-     "does not read MC_YAWRATE_MAX", "another value", not_read,
-     [](FaultyLaw& law) { keep_at<&P::mc_yawrate_max>(law, 200.0f); }},
+     "does not read MC_YAWRATE_MAX", "another value", not_read, keep_default<&P::mc_yawrate_max>},
     {"cascade-tilt-max-not-read", "parameters", Stage::parameters, "does not read MPC_MAN_TILT_MAX",
-     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mpc_man_tilt_max>(law, 35.0f); }},
+     "another value", not_read, keep_default<&P::mpc_man_tilt_max>},
     {"cascade-man-yaw-not-read", "parameters", Stage::parameters, "does not read MPC_MAN_Y_MAX",
-     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mpc_man_y_max>(law, 150.0f); }},
+     "another value", not_read, keep_default<&P::mpc_man_y_max>},
     {"cascade-spoolup-time-not-read",
      "spool_up",
      Stage::parameters,
      "does not read COM_SPOOLUP_TIME",
      "another value",
      not_read,
-     [](FaultyLaw& law) { keep_at<&P::com_spoolup_time>(law, 1.0f); },
+     keep_default<&P::com_spoolup_time>,
      {},
      from_v1_15_4},
     {"cascade-pitchrate-p-of-roll", "parameters", Stage::parameters,
@@ -147,29 +162,28 @@ const Fault parameter_list[] = {
      "reads MC_ACRO_R_MAX instead of MC_ACRO_Y_MAX", "acro limits that differ", wrong_name,
      read_from<&P::mc_acro_y_max, &P::mc_acro_r_max>},
     {"cascade-rollrate-p-not-read", "parameters", Stage::parameters, "does not read MC_ROLLRATE_P",
-     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mc_rollrate_p>(law, 0.15f); }},
+     "another value", not_read, keep_default<&P::mc_rollrate_p>},
     {"cascade-rollrate-i-not-read", "parameters", Stage::parameters, "does not read MC_ROLLRATE_I",
-     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mc_rollrate_i>(law, 0.2f); }},
+     "another value", not_read, keep_default<&P::mc_rollrate_i>},
     {"cascade-rollrate-d-not-read", "parameters", Stage::parameters, "does not read MC_ROLLRATE_D",
-     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mc_rollrate_d>(law, 0.003f); }},
+     "another value", not_read, keep_default<&P::mc_rollrate_d>},
     {"cascade-rollrate-ff-not-read", "parameters", Stage::parameters,
-     "does not read MC_ROLLRATE_FF", "another value", not_read,
-     [](FaultyLaw& law) { keep_at<&P::mc_rollrate_ff>(law, 0.0f); }},
+     "does not read MC_ROLLRATE_FF", "another value", not_read, keep_default<&P::mc_rollrate_ff>},
     {"cascade-rollrate-k-not-read", "parameters", Stage::parameters, "does not read MC_ROLLRATE_K",
-     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mc_rollrate_k>(law, 1.0f); }},
+     "another value", not_read, keep_default<&P::mc_rollrate_k>},
     {"cascade-yawrate-p-not-read", "parameters", Stage::parameters, "does not read MC_YAWRATE_P",
-     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mc_yawrate_p>(law, 0.2f); }},
+     "another value", not_read, keep_default<&P::mc_yawrate_p>},
     {"cascade-yawrate-k-not-read", "parameters", Stage::parameters, "does not read MC_YAWRATE_K",
-     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mc_yawrate_k>(law, 1.0f); }},
+     "another value", not_read, keep_default<&P::mc_yawrate_k>},
     {"cascade-rr-int-lim-not-read", "parameters", Stage::parameters, "does not read MC_RR_INT_LIM",
-     "another value", not_read, [](FaultyLaw& law) { keep_at<&P::mc_rr_int_lim>(law, 0.3f); }},
+     "another value", not_read, keep_default<&P::mc_rr_int_lim>},
     {"cascade-yaw-tq-cutoff-not-read",
      "yaw_filter",
      Stage::parameters,
      "does not read MC_YAW_TQ_CUTOFF",
      "another value",
      not_read,
-     [](FaultyLaw& law) { keep_at<&P::mc_yaw_tq_cutoff>(law, 2.0f); },
+     keep_default<&P::mc_yaw_tq_cutoff>,
      {},
      from_v1_16_0},
     {"cascade-roll-p-of-v1.16.0",
@@ -196,7 +210,7 @@ const Fault parameter_list[] = {
      "does not read MAN_DEADZONE, in v1.16.0 MPC_HOLD_DZ",
      "another value",
      not_read,
-     [](FaultyLaw& law) { keep_at<&P::man_deadzone>(law, 0.1f); },
+     keep_default<&P::man_deadzone>,
      {},
      from_v1_16_0},
     {"cascade-yaw-deadzone-default-0",
@@ -223,7 +237,7 @@ const Fault parameter_list[] = {
      "does not read MC_REF_W_N",
      "another value",
      not_read,
-     [](FaultyLaw& law) { keep_at<&P::mc_ref_w_n>(law, 50.0f); },
+     keep_default<&P::mc_ref_w_n>,
      {},
      from_v1_18},
     {"cascade-ref-ff-max-not-read",
@@ -232,7 +246,7 @@ const Fault parameter_list[] = {
      "does not read MC_REF_FF_MAX",
      "another value",
      not_read,
-     [](FaultyLaw& law) { keep_at<&P::mc_ref_ff_max>(law, 100.0f); },
+     keep_default<&P::mc_ref_ff_max>,
      {},
      from_v1_18},
     {"cascade-ref-ff-max-default-0",

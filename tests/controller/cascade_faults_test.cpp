@@ -175,6 +175,36 @@ TEST(CascadeFaults, EachIsTheLawInTheOtherProfiles) {
   }
 }
 
+// Whether the fault acts although no parameter is set.
+template <typename Unit>
+bool acts_at_defaults(cascade::Profile profile, const Fault& fault,
+                      const Answered<Unit>& answered) {
+  const Fault* const one[] = {&fault};
+  Unit law(profile, {}), faulty(profile, one);
+  typename Unit::Outputs right{}, out{};
+  for (const auto& step : answered.walks().front().steps) {
+    law.step(step.in, right);
+    faulty.step(step.in, out);
+    if (differs(out, right, 0)) return true;
+  }
+  return false;
+}
+
+// A default of another release would be a second mistake.
+TEST(CascadeFaults, AParameterThatIsNotReadHasTheDefaultOfItsProfile) {
+  std::size_t count = 0;
+  for (const Fault* fault : cascade_faults()) {
+    if (!fault->id.ends_with("-not-read")) continue;
+    for (const cascade::Profile profile : every_profile) {
+      if (!fault->is_detectable(name_of(profile))) continue;
+      ++count;
+      EXPECT_FALSE(acts_at_defaults(profile, *fault, attitude())) << fault->id;
+      EXPECT_FALSE(acts_at_defaults(profile, *fault, rate())) << fault->id << name_of(profile);
+    }
+  }
+  EXPECT_GE(count, 60u);
+}
+
 // An instance with a fault has no effect on another one.
 TEST(CascadeFaults, InstancesShareNothing) {
   const auto& walk = attitude().walks().front();
