@@ -49,20 +49,15 @@ std::optional<Diagnosis> diagnosed(const RunResult& run, const Examined& examine
 }
 
 // If no vector was compared because the port supports none of their profiles: what it supports.
-std::optional<Error> other_profiles(const RunResult& run, const HostOptions& host) {
+std::optional<Error> other_profiles(const RunResult& run, const Examined& examined) {
   const auto applies = [](const VectorResult& result) {
     return result.applies || result.verdict != Verdict::skip;
   };
   if (!run.errors.empty() || std::ranges::any_of(run.results, applies)) return std::nullopt;
-  std::vector<std::string> profiles;
-  for (const VectorResult& result : run.results) {
-    if (std::ranges::find(profiles, result.profile) == profiles.end()) {
-      profiles.push_back(result.profile);
-    }
-  }
-  return supported_instead(host, profiles, [](const std::string& profile, const std::string& port) {
-    return "attest run --profile " + profile + port;
-  });
+  return supported_instead(examined.host, profiles_in(examined.cases),
+                           [](const std::string& profile, const std::string& port) {
+                             return "attest run --profile " + profile + port;
+                           });
 }
 
 int exit_code(const RunResult& run) {
@@ -127,7 +122,7 @@ int conclude(const RunResult& run, const Examined& examined, const ReportOptions
   // Before the summary is printed: if the reader of stdout closes the pipe early, SIGPIPE ends this
   // process.
   const auto written = write_reports(reports, {run, diagnosis, examined.traces});
-  const auto unsupported = other_profiles(run, examined.host);
+  const auto unsupported = other_profiles(run, examined);
   const int code = unsupported ? report_error(*unsupported) : exit_code(run);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   if (!globals.quiet || code != exit_ok) {

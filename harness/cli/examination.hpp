@@ -23,7 +23,7 @@ class Examination {
 
   void good(const std::string& what, const std::string& finding);
   void good_detail(const std::string& what, const std::string& finding);
-  // Good details together; without `verbose`, and not counted.
+  // One line in place of the good details, which `verbose` prints. No check of its own.
   void summary(const std::string& what, const std::string& finding) const;
   // Good, but the author of the port should read it. Equal findings are printed once.
   void remark(const std::string& what, const std::string& finding);

@@ -140,8 +140,9 @@ Result<std::vector<SimulatedFlight>> fly_all(const Sim& sim, const HostOptions& 
   return flights;
 }
 
-// The flight of a bare name, such as `hover`, in the newest profile that the port supports and that
-// has it. Asks the port for every profile. Empty: the name has a profile, or there is none.
+// The flight of a name without a profile, such as `hover`: that of the newest profile that the port
+// supports. Asks the port about every profile. Empty: the name has a profile, or no profile of the
+// port has such a flight.
 std::optional<Sim> flight_of_port(const SimOptions& options, const Globals& globals) {
   const bool is_bare = options.timing.empty() && options.rate.empty() &&
                        options.case_name.find_first_of("/.*?[") == std::string::npos;

@@ -16,8 +16,8 @@ namespace attest::cli {
 using CommandFor = std::function<std::string(const std::string& profile, const std::string& port)>;
 
 // "lib:mine.so supports px4-v1.18, px4-v1.17, not px4-v1.5.5; write: attest run --profile px4-v1.18
-// --port lib:mine.so". Asks the port again, for every profile. Empty: `missing` is empty, the port
-// supports one of them, or the question ends by a crash or a timeout.
+// --port lib:mine.so". Asks the port about every profile. Empty if the port supports one of
+// `missing`, if that is empty, or if the port crashes or does not answer.
 std::optional<Error> supported_instead(const HostOptions& host,
                                        const std::vector<std::string>& missing,
                                        const CommandFor& command);

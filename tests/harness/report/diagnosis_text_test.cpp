@@ -54,15 +54,19 @@ TEST(DiagnosisText, ListsEachMistakeAndWhatNoneExplains) {
   EXPECT_THAT(html_report({sample_run(), diagnosis, {}}), HasSubstr("the vehicle &lt;lands&gt;"));
 }
 
+Pattern pattern_in(Stage stage, std::size_t vectors, const std::string& group) {
+  Pattern pattern;
+  pattern.stage = stage;
+  pattern.vectors = vectors;
+  pattern.groups = {group};
+  return pattern;
+}
+
 TEST(DiagnosisText, BeginsWithWhatMoreVectorsHaveInCommon) {
   Diagnosis diagnosis = unlike_every_fault();
   diagnosis.suspects = {{faults::find_fault("yaw-reversed"), 1, 9, {}}};
   diagnosis.unexplained = 9;
-  Pattern pattern;
-  pattern.stage = Stage::integrator;
-  pattern.vectors = 8;
-  pattern.groups = {"saturation"};
-  diagnosis.patterns = {pattern};
+  diagnosis.patterns = {pattern_in(Stage::integrator, 8, "saturation")};
   EXPECT_THAT(diagnosis_text(diagnosis),
               testing::StartsWith("9 of 9 failing vectors have deviations that the faults of the "
                                   "catalogue do not explain\n"
@@ -73,11 +77,7 @@ TEST(DiagnosisText, BeginsWithWhatMoreVectorsHaveInCommon) {
 
 TEST(DiagnosisText, OfAnUnknownMistakeHasWhatItsDeviationsHaveInCommon) {
   Diagnosis diagnosis = unlike_every_fault();
-  Pattern pattern;
-  pattern.stage = Stage::sticks;
-  pattern.vectors = 1;
-  pattern.groups = {"sticks"};
-  diagnosis.patterns = {pattern};
+  diagnosis.patterns = {pattern_in(Stage::sticks, 1, "sticks")};
   EXPECT_THAT(diagnosis_text(diagnosis),
               testing::EndsWith("  in the sticks: values deviate\n"
                                 "      in 1 failing vector of the group sticks\n"));
