@@ -18,10 +18,11 @@ void keep_at(FaultyLaw& law, float value) {
   change_parameters(law.rate_unit, change);
 }
 
-// The default parameters of the unit's profile, which is known when the unit is made.
+// The default parameters of the unit's profile, which is known when the unit is made. A law alone
+// has gains as inputs and no defaults: there they are those of v1.16.0.
 template <typename Unit>
 std::shared_ptr<const P> defaults_of(Unit& unit, cascade::ParameterTable table) {
-  auto defaults = std::make_shared<P>();
+  auto defaults = std::make_shared<P>(default_parameters(table, cascade::Profile::px4_v1_16_0));
   unit.step.traits = [defaults, table, then = unit.step.traits](cascade::Profile profile) {
     *defaults = default_parameters(table, profile);
     return then(profile);
