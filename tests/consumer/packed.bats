@@ -161,3 +161,21 @@ P
     --no-diagnose --jobs 1 --filter 'px4-v1.5.5/rates/d_alone@250hz'
   [ "$status" -eq 0 ]
 }
+
+@test "a wrong port cannot have its ctest skipped by what it prints" {
+  cp -r "$SOURCE/controller/starters/c" port
+  cd port
+  sed -i 's/rates_sp\[i\] - rates\[i\];/rates_sp[i] + rates[i];/' rate.c
+  sed -i 's/^static int step(.*{$/&\n  puts("attest: error: no vector was compared");/
+    1i #include <stdio.h>' unit.c
+  cat >>CMakeLists.txt <<'C'
+enable_testing()
+attest_add_tests(TARGET attest_starter_c PROFILE px4-v1.5.5 px4-v1.16.0 ARGUMENTS --rate 250)
+C
+  cmake -B build -DCMAKE_PREFIX_PATH="$INSTALLED" >log 2>&1 || { cat log; false; }
+  cmake --build build >log 2>&1 || { cat log; false; }
+  run ctest --test-dir build -R '/(rates|yaw_filter)$' # v1.5.5 has no yaw filter
+  [ "$status" -eq 8 ]
+  [[ $output =~ attest_starter_c/rates' '\.*\*\*\*Failed ]]
+  [[ $output =~ attest_starter_c/yaw_filter' '\.*\*\*\*Skipped ]]
+}
