@@ -149,7 +149,8 @@ const Result<GoldenOrigins>& Goldens::origins_of(const std::string& profile) con
 
 bool Goldens::has(const Case& the_case) const {
   const auto& origins = origins_of(the_case.profile);
-  return !origins || origins->contains(key_of(the_case));
+  const std::string key = key_of(the_case);
+  return !origins || origins->contains(key) || is_suite_file(golden_file(root_, key));
 }
 
 std::string Goldens::reference() const {

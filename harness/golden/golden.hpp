@@ -64,8 +64,8 @@ class Goldens {
   // Errors: those of the file with the origins. A profile without that file has none.
   const Result<GoldenOrigins>& origins_of(const std::string& profile) const;
 
-  // Whether the origins name a golden of the case. True if they cannot be read, which open()
-  // reports.
+  // Whether the case has a golden: one in its origins or in its file. If one of them is missing or
+  // cannot be read, open() reports it.
   bool has(const Case& the_case) const;
 
   // The description of the port that made the goldens; of all such ports, after `; `, if a killed

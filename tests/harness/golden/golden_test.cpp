@@ -87,6 +87,18 @@ TEST_F(GoldenTest, ThatWasBlessedAnewDuringTheRunIsAnError) {
   EXPECT_THAT(anew.error().message, HasSubstr("changed during the run"));
 }
 
+// A suite with a base is judged by the reference where it has no golden. A lost one is no excuse.
+TEST_F(GoldenTest, OfWhichOnlyTheFileOrOnlyTheOriginIsLeftIsStillOne) {
+  bless(root(), a_case());
+  EXPECT_TRUE(Goldens(root()).has(a_case()));
+  EXPECT_FALSE(Goldens(root()).has(other_case()));
+  fs::rename(file(), root() / "aside.csv");
+  EXPECT_TRUE(Goldens(root()).has(a_case()));
+  fs::rename(root() / "aside.csv", file());
+  fs::remove(origins());
+  EXPECT_TRUE(Goldens(root()).has(a_case()));
+}
+
 // A report names the reference, so it must be that which made the goldens.
 TEST_F(GoldenTest, TheReferenceIsThePortThatMadeThem) {
   bless(root(), a_case());
