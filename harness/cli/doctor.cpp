@@ -12,12 +12,14 @@
 #include "controller/mc_att_control/profile.hpp"
 #include "harness/casefile/select.hpp"
 #include "harness/cli/examination.hpp"
+#include "harness/cli/run_plan.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/version.hpp"
 #include "harness/golden/golden.hpp"
 #include "harness/host/port_process.hpp"
 #include "harness/process/child.hpp"
+#include "harness/report/text.hpp"
 #include "harness/verify/recorded_check.hpp"
 
 namespace attest::cli {
@@ -65,12 +67,18 @@ void examine_cases(const SuiteFolder& suite, Examination& examination) {
   const auto cases = select_cases(suite.case_folders(), {});
   if (!cases) return examination.bad("cases", cases.error().to_string());
   std::size_t vectors = 0;
+  std::size_t of_reference = 0;
   std::vector<std::string> stale;
   GoldenKeys keys_of_cases;
   const Goldens goldens(suite.golden());
+  const bool may_lack_goldens = judged_by_reference(suite, goldens.reference());
   for (const auto& [the_case, configurations] : *cases) {
     vectors += configurations.size();
     keys_of_cases[the_case.profile].insert(key_of(the_case));
+    if (may_lack_goldens && !goldens.has(the_case)) {
+      ++of_reference;
+      continue;
+    }
     if (const auto golden = goldens.open(the_case); !golden) {
       stale.push_back(golden.error().to_string());
     }
@@ -83,9 +91,14 @@ void examine_cases(const SuiteFolder& suite, Examination& examination) {
           fmt::format("{} has no case; `attest bless` removes it", id_of(profile, key)));
     }
   }
-  if (stale.empty()) return examination.good("golden", "one for each case, all current");
-  examination.bad("golden", fmt::format("{} missing, stale or without a case; first: {}",
-                                        stale.size(), stale[0]));
+  if (!stale.empty()) {
+    return examination.bad("golden", fmt::format("{} missing, stale or without a case; first: {}",
+                                                 stale.size(), stale[0]));
+  }
+  if (of_reference == 0) return examination.good("golden", "one for each case, all current");
+  const std::string lack =
+      fmt::format("the reference alone judges {} without a golden", counted(of_reference, "case"));
+  examination.partly_good("golden", "all current; " + lack, lack);
 }
 
 // A group without a recording is not an error, but limits the weight of its verdicts.

@@ -243,7 +243,7 @@ int merge_command(const MergeOptions& options, const Globals& globals) {
   if (auto ordered = put_in_order(*cases, run); !ordered) return report_error(ordered.error());
   run.suite = vectors_by_group(*suite, run.suite_sha256);
   run.suite_folder = globals.suite;
-  name_files(*cases, *suite, run);
+  name_files(*cases, Goldens(suite->golden()), *suite, run);
   auto reports = open_reports(options.report);
   if (!reports) return report_error(reports.error());
   ReportOptions report = options.report;

@@ -41,11 +41,12 @@ void PlottedTraces::save(const RunPlan& plan, const SuiteFolder& suite, const Ru
   for (const VectorResult* result : vectors_to_plot(plan.run, named)) ids.insert(result->id());
   if (!temporary_ || !options.timing.empty() || ids.empty()) return;
   VehicleModels vehicle_models(suite.models());
-  const auto jobs = case_jobs(
-      keep_vectors(plan.cases, ids), std::make_shared<const Goldens>(suite.golden(), plan.suite),
-      vehicle_models,
-      {plan.run.level, folder_, plan.run.parameters, false, judged_by_reference(suite, plan.run)},
-      plan.host);
+  const auto jobs =
+      case_jobs(keep_vectors(plan.cases, ids),
+                std::make_shared<const Goldens>(suite.golden(), plan.suite), vehicle_models,
+                {plan.run.level, folder_, plan.run.parameters, false,
+                 judged_by_reference(suite, plan.run.suite_reference)},
+                plan.host);
   JobOptions<VectorResult> again;
   again.processes = options.jobs;
   again.in_process = plan.host.in_process;

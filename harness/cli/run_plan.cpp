@@ -182,18 +182,18 @@ Result<void> plan_cases(const RunOptions& options, const SuiteFolder& suite, Run
   }
   if (auto checked = check_recorded(*cases, plan); !checked) return checked;
   VehicleModels vehicle_models(suite.models());
-  auto jobs =
-      case_jobs(*cases, std::make_shared<const Goldens>(suite.golden(), plan.suite), vehicle_models,
-                {plan.run.level, options.save_traces, plan.run.parameters, true,
-                 judged_by_reference(suite, plan.run)},
-                plan.host);
+  const auto goldens = std::make_shared<const Goldens>(suite.golden(), plan.suite);
+  auto jobs = case_jobs(*cases, goldens, vehicle_models,
+                        {plan.run.level, options.save_traces, plan.run.parameters, true,
+                         judged_by_reference(suite, plan.run.suite_reference)},
+                        plan.host);
   if (!jobs) return tl::unexpected(jobs.error());
   plan.jobs = *std::move(jobs);
   plan.run.selection = options.select.narrowing();
   plan.run.all_configurations = all_configurations;
   if (const auto shard = Shard::parse(options.select.shard)) plan.run.shard = *shard;
   plan.run.rates.assign(rates.begin(), rates.end());
-  name_files(*cases, suite, plan.run);
+  name_files(*cases, *goldens, suite, plan.run);
   plan.cases = std::move(*cases);
   return {};
 }
@@ -214,7 +214,7 @@ Result<void> plan_timed(const RunOptions& options, const SuiteFolder& suite, Run
   if (auto asked = ask_port({flight->the_case.profile}, plan); !asked) return asked;
   plan.run.selected = 1;
   plan.run.timing = options.timing;
-  name_files({{flight->the_case, {}}}, suite, plan.run);
+  name_files({{flight->the_case, {}}}, Goldens(suite.golden(), plan.suite), suite, plan.run);
   plan.run.rates = {flight->timing.configuration.rate};
   plan.jobs.push_back(std::make_unique<TimedJob>(
       std::move(flight->the_case), std::move(flight->timing), std::move(flight->vehicle_model),
@@ -279,13 +279,13 @@ Result<ExpectedFailures> read_expected(const std::string& file, const SuiteFolde
 
 }  // namespace
 
-bool judged_by_reference(const SuiteFolder& suite, const RunResult& run) {
-  return suite.base.has_value() && run.suite_reference.empty();
+bool judged_by_reference(const SuiteFolder& suite, const std::string& suite_reference) {
+  return suite.base.has_value() && suite_reference.empty();
 }
 
-void name_files(const std::vector<SelectedCase>& cases, const SuiteFolder& suite, RunResult& run) {
+void name_files(const std::vector<SelectedCase>& cases, const Goldens& goldens,
+                const SuiteFolder& suite, RunResult& run) {
   const std::filesystem::path golden = path_from_here(suite.golden());
-  const Goldens goldens(suite.golden());
   for (const SelectedCase& selected : cases) {
     const std::string id = selected.the_case.id();
     run.case_files[id] = path_from_here(selected.the_case.file);

@@ -43,10 +43,12 @@ Result<RunPlan> make_plan(const RunOptions& options, const SuiteFolder& suite);
 
 // Whether cases without a golden are judged by the reference alone: those of a suite with a base,
 // unless a port is the reference of the suite. In any other suite a missing golden is an error.
-bool judged_by_reference(const SuiteFolder& suite, const RunResult& run);
+// `suite_reference`: Goldens::reference().
+bool judged_by_reference(const SuiteFolder& suite, const std::string& suite_reference);
 
 // Stores the paths of the case files and of the goldens in `run`, for its reports.
-void name_files(const std::vector<SelectedCase>& cases, const SuiteFolder& suite, RunResult& run);
+void name_files(const std::vector<SelectedCase>& cases, const Goldens& goldens,
+                const SuiteFolder& suite, RunResult& run);
 
 // Why a suite whose reference is a port has neither flights nor diagnosis.
 inline constexpr const char* own_law_only =

@@ -213,3 +213,31 @@ P
   [ "$status" -eq 2 ]
   has "--param leaves them out"
 }
+
+@test "cases without a golden in a suite with a base are judged by the reference, flights too" {
+  local flights=(--filter 'px4-v1.5.5/flight/own_hover@250hz-*-ode')
+  mkdir -p ours/cases/px4-v1.5.5/{flight,rates}
+  cp "$SOURCE/cases/px4-v1.5.5/flight/hover.toml" ours/cases/px4-v1.5.5/flight/own_hover.toml
+  cp "$SOURCE/cases/px4-v1.5.5/rates/p_alone.toml" ours/cases/px4-v1.5.5/rates/own_p.toml
+  cp -r "$SOURCE/models" ours
+  echo released >ours/BASE
+  run ours doctor
+  [ "$status" -eq 0 ]
+  has "the reference alone judges"
+  run ours run "${flights[@]}"
+  [ "$status" -eq 0 ]
+  has "; the reference alone judged "
+  run ours run "${flights[@]}" --port fault:i-subtracted --no-diagnose
+  [ "$status" -eq 1 ]
+  run ours run --filter 'px4-v1.5.5/rates/own_p@250hz' --port fault:yawrate-p-not-read --no-diagnose
+  [ "$status" -eq 1 ]
+
+  # A golden whose origin is lost is an error. It is not judged by the reference.
+  run ours bless --port "lib:$PORTS/port_sign_flip.so" --group rates --profile px4-v1.5.5 --yes \
+    --reason "our law"
+  [ "$status" -eq 0 ]
+  rm ours/golden/px4-v1.5.5/provenance.toml
+  run ours run --filter 'px4-v1.5.5/rates/own_p@250hz'
+  [ "$status" -eq 2 ]
+  lacks "PASS"
+}
