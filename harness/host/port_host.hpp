@@ -74,8 +74,8 @@ class PortHost {
   // The CPU time of the port's process so far, as the judge sees it. Empty without such a process.
   virtual std::optional<Nanoseconds> cpu_time() const { return std::nullopt; }
 
-  // The last line that the port printed, or that of its last panic. Empty: it printed nothing, or
-  // it does not run in a process of its own.
+  // The last line that the port printed in the last trace or flight, or that of its panic. Empty:
+  // it printed nothing, or it does not run in a process of its own.
   virtual std::string last_words() const { return ""; }
 
   // Whether the port makes a unit of that profile; also false after a fault of the port.

@@ -22,10 +22,6 @@ namespace {
 using Kind = Received::Kind;
 using Clock = std::chrono::steady_clock;
 
-// A request has at most so many ticks: new memory costs the port's process, which is new for a few
-// vectors, more than its steps do.
-constexpr std::size_t ticks_of_part = 2048;
-
 // The fault of a request to a port that had `kind` before.
 std::string not_run(PortFault::Kind kind) {
   return kind == PortFault::Kind::timeout
@@ -64,8 +60,10 @@ class PortProcess final : public PortHost {
   const Declarations& declarations() const override { return declarations_; }
 
   std::optional<PortFault> drive(const ModuleUnderTest& subject, Trace& trace) override {
+    if (subject.part.first_tick == 0) begin_to_print();
     const std::span<Sample> samples = trace.samples;
-    const std::size_t most = subject.instances == Instances::one ? ticks_of_part : samples.size();
+    // New memory for all ticks of a long trace would cost the process more than its steps.
+    const std::size_t most = subject.instances == Instances::one ? ticks_at_once : samples.size();
     std::optional<PortFault> fault;
     std::size_t first = 0;
     do {
@@ -80,6 +78,7 @@ class PortProcess final : public PortHost {
   }
 
   Result<Flown> fly(const FlightPlan& plan) override {
+    begin_to_print();
     const std::vector<Blob> times{blob_of(plan.timing.unit), blob_of(plan.timing.attitude_unit)};
     const Rate& rate = plan.configuration.rate.motor_unit;
     // A flight that diverges does so before this time.
@@ -151,9 +150,13 @@ class PortProcess final : public PortHost {
 
   const std::optional<PortFault>& fault() const { return fault_; }
 
-  std::string last_words() const override { return port_ ? port_->child.last_words() : ""; }
+  std::string last_words() const override {
+    return port_ ? port_->child.last_words(printed_before_) : "";
+  }
 
  private:
+  void begin_to_print() { printed_before_ = port_ ? port_->child.printed() : 0; }
+
   std::optional<PortFault> drive_part(const ModuleUnderTest& subject, std::span<Sample> samples,
                                       const std::vector<ParameterChange>& changes) {
     const ModuleInfo& module = info_of(subject.module);
@@ -264,6 +267,7 @@ class PortProcess final : public PortHost {
   std::optional<PortChild> port_;
   Declarations declarations_;
   std::uint64_t request_ = 0;
+  std::size_t printed_before_ = 0;  // before the trace or flight
   AnswerMeter::Limit exceeded_ = AnswerMeter::Limit::none;
   bool was_asked_ = false;          // by a request; after a fault, later ones are `not run`
   std::optional<PortFault> fault_;  // permanent
@@ -306,11 +310,8 @@ Result<PortDescription> describe_callable(const HostOptions& options,
       description.goes_wrong = fmt::format("profile {}: {}", profile, changed);
       break;
     }
-    if (supports) {
-      description.profiles.push_back(profile);
-    } else {
-      description.refusals[profile] = (*host)->last_words();
-    }
+    if (supports) description.profiles.push_back(profile);
+    if (!supports) description.refusals[profile] = (*host)->last_words();
   }
   return description;
 }

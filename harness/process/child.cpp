@@ -231,12 +231,16 @@ std::string last_words_in(std::string_view text) {
   return std::string(last.substr(last.size() - std::min(last.size(), most)));
 }
 
-std::string Child::last_words() const {
-  constexpr off_t enough = 16384;  // a panic with its backtrace
-  const off_t size = ::lseek(output_, 0, SEEK_END);
-  const off_t begin = std::max<off_t>(size - enough, 0);
-  std::string text(static_cast<std::size_t>(std::max<off_t>(size - begin, 0)), '\0');
-  const ssize_t count = ::pread(output_, text.data(), text.size(), begin);
+std::size_t Child::printed() const {
+  return static_cast<std::size_t>(std::max<off_t>(::lseek(output_, 0, SEEK_END), 0));
+}
+
+std::string Child::last_words(std::size_t from) const {
+  constexpr std::size_t enough = 16384;  // a panic with its backtrace
+  const std::size_t size = printed();
+  const std::size_t begin = std::max(size - std::min(size, enough), std::min(size, from));
+  std::string text(size - begin, '\0');
+  const ssize_t count = ::pread(output_, text.data(), text.size(), static_cast<off_t>(begin));
   text.resize(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
   return last_words_in(text);
 }

@@ -67,8 +67,10 @@ class Child {
   // After end(): the child exited by itself, with status 0.
   bool has_exited_well() const { return has_exited_well_; }
 
-  // last_words_in() of what the child printed on stdout and stderr.
-  std::string last_words() const;
+  // The bytes that the child has printed on stdout and stderr so far.
+  std::size_t printed() const;
+  // last_words_in() of what it printed after the first `from` bytes.
+  std::string last_words(std::size_t from = 0) const;
   std::string last_printed() const;  // "; it last printed: LAST WORDS", or empty
 
  private:

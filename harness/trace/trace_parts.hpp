@@ -16,6 +16,9 @@ namespace attest {
 // trace is in memory as a whole.
 inline constexpr std::size_t whole_trace = std::numeric_limits<std::size_t>::max();
 
+// So many ticks of a long trace are in memory, and go to a port in one request.
+inline constexpr std::size_t ticks_at_once = 2048;
+
 class TraceParts {
  public:
   virtual ~TraceParts() = default;

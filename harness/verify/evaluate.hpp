@@ -80,7 +80,6 @@ VectorResult evaluate_trace(const Trace& recorded, const ModuleUnderTest& subjec
 // The same, in memory that does not grow with the length of the trace: at most `most_ticks` are in
 // memory. But the events level, which looks ahead, and a recorded port need the whole trace. For a
 // port with a fixed step or in fixed point, the trace is read twice. Errors: those of TraceParts.
-inline constexpr std::size_t ticks_at_once = 2048;
 Result<VectorResult> evaluate_parts(TraceParts& recorded, const ModuleUnderTest& subject,
                                     PortHost& host, const Tolerances& tolerances,
                                     std::size_t most_ticks = ticks_at_once);

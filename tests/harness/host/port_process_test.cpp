@@ -74,6 +74,16 @@ TEST(PortProcess, DrivesAsHere) {
   }
 }
 
+TEST(PortProcess, TheLastWordsAreThoseOfTheLastTrace) {
+  const auto host = host_of("prints");
+  Trace trace = pitching();
+  EXPECT_FALSE(host->drive(unit, trace));
+  EXPECT_EQ(host->last_words(), "a note on step 29");
+  trace.samples.clear();
+  EXPECT_FALSE(host->drive(unit, trace));
+  EXPECT_EQ(host->last_words(), "");
+}
+
 TEST(PortProcess, DrivesTheSameInParts) {
   for (const std::string port : {"builtin", "sign_flip"}) {
     Trace whole = pitching();

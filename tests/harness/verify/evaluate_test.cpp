@@ -88,7 +88,7 @@ TEST_F(EvaluateTest, AMissingGoldenIsOneErrorForAllRates) {
 }
 
 // Returns the given outputs for any inputs.
-class Reciting final : public PortHost {
+class Reciting : public PortHost {
  public:
   explicit Reciting(Trace answers) : answers_(std::move(answers)) {}
 
@@ -113,6 +113,24 @@ class Reciting final : public PortHost {
  private:
   Trace answers_;
 };
+
+class Talking final : public Reciting {
+ public:
+  Talking() : Reciting({}) {}
+  std::string last_words() const override { return "no gain"; }
+};
+
+TEST(AddLastWords, OfAPortWithWrongOutputsOnly) {
+  const Talking port;
+  VectorResult result;
+  result.verdict = Verdict::pass;
+  result.first.emplace();
+  add_last_words(port, result);
+  EXPECT_EQ(result.reason, "");
+  result.verdict = Verdict::fail;
+  add_last_words(port, result);
+  EXPECT_EQ(result.reason, "differs from the reference; the port last printed: no gain");
+}
 
 // Thrust comes as near as 0.005 to the integrator's gate at tick 10.
 constexpr const char* over_the_gate =
