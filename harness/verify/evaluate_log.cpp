@@ -8,12 +8,11 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "harness/golden/recorded.hpp"
 #include "harness/golden/reference.hpp"
-#include "harness/port/profiles.hpp"
 #include "harness/ulog/single_steps.hpp"
+#include "harness/verify/controls_without_memory.hpp"
 #include "harness/verify/evaluate_single_steps.hpp"
 #include "harness/verify/judge.hpp"
 #include "harness/verify/replayed_log.hpp"
@@ -54,56 +53,6 @@ std::vector<bool> ticks_but(const std::vector<LoggedSetpoint>& ticks, Known most
   for (const LoggedSetpoint& setpoint : ticks) leaves_out.push_back(setpoint.known > most);
   return leaves_out;
 }
-
-struct Axis {
-  const char* name;
-  const char* d_gain;
-  std::size_t control;
-};
-constexpr Axis axes[] = {
-    {"roll", "MC_ROLLRATE_D", 0}, {"pitch", "MC_PITCHRATE_D", 1}, {"yaw", "MC_YAWRATE_D", 2}};
-
-// The controls that depend on earlier steps by their integral only. Empty if each axis has a D
-// term.
-struct ControlsWithoutD {
-  ChannelSet channels;
-  std::string condition;
-
-  ControlsWithoutD(const LoggedUnit& log, const std::string& profile,
-                   const LogParameters& parameters) {
-    const ProfileInfo* const known = find_profile(profile);
-    if (log.module != Module::mc_att_control || !known) return;
-    channels = channels_of(log.module, "out/actuator_controls_0.") & log.trace.present;
-    std::vector<std::string> names;
-    for (const Axis& axis : axes) {
-      const bool has_d = any_is_set(axis.d_gain, *known, parameters.as_flown) ||
-                         any_is_set(axis.d_gain, *known, parameters.of_port);
-      const auto control = find_channel(
-          log.module, fmt::format("out/actuator_controls_0.control[{}]", axis.control));
-      if (has_d) channels.reset(*control);
-      if (!has_d && channels[*control]) names.emplace_back(axis.name);
-    }
-    if (names.empty()) channels.reset();
-    condition = fmt::format("{} and thrust, while the integrals are 0", fmt::join(names, ", "));
-  }
-
-  // Whether the parameter is not 0 at some time.
-  static bool any_is_set(std::string_view name, const ProfileInfo& profile,
-                         const std::vector<ParameterChange>& changes) {
-    float value = 0;
-    for (const Parameter& parameter : parameters_of(Module::mc_att_control, profile)) {
-      if (parameter.name == name) value = parameter.default_value;
-    }
-    bool any = false, begins = true;
-    for (const ParameterChange& change : changes) {
-      if (change.name != name) continue;
-      if (change.tick > 0 && begins) any = any || value != 0;
-      begins = false;
-      any = any || change.value != 0;
-    }
-    return begins ? value != 0 : any;
-  }
-};
 
 bool has_integral(const Sample& sample) {
   const auto& status = sample.out.mc_att_ctrl_status;
@@ -226,7 +175,7 @@ class LogJudge {
     ReplayedPort reference(*host, subject_, parameters_.as_flown);
     ReplayedPort judged(port, subject_, parameters_.of_port);
     LogAgreement of_reference(log_.trace.present, limits_), of_port(log_.trace.present, limits_);
-    const ControlsWithoutD controls(log_, subject_.profile, parameters_);
+    const ControlsWithoutMemory controls(log_, subject_.profile, parameters_);
     LogAgreement reference_alone(controls.channels, limits_),
         port_alone(controls.channels, limits_);
     bool is_integrating = false;
@@ -285,7 +234,7 @@ class LogJudge {
   std::size_t most_ticks_;
   const LogParameters& parameters_;
   bool has_reference_ = true;                               // it can answer
-  std::vector<TopicAgreement> alone_, alone_of_reference_;  // ControlsWithoutD
+  std::vector<TopicAgreement> alone_, alone_of_reference_;  // ControlsWithoutMemory
 };
 
 std::string why_no_step(const SingleSteps& steps, const std::string& not_judged) {

@@ -28,9 +28,9 @@ struct LogResult {
 // - vehicle_rates_setpoint of the controller and of the attitude unit depends on one sample only.
 //   Ticks for which the log lacks an input are left out. Where the sticks make the setpoint, it
 //   depends on earlier steps.
-// - Of actuator_controls_0 of the controller, an axis depends on earlier steps only by its D term
-//   and by its integral. While the reference's integrals are 0, the thrust and the axes without a
-//   D term are judged, as a topic of their own.
+// - Of actuator_controls_0 of the controller, an axis depends on earlier steps only by its D term,
+//   by its integral, and in v1.3.4 by its feed-forward. While the reference's integrals are 0, the
+//   thrust and the axes without these terms are judged, as a topic of their own.
 // - All other outputs depend on earlier steps. The log must have every step; a log of v1.14 to
 //   v1.16 may lack a few.
 // - The reference must agree with the log, unless the log is of the controller and has every step.

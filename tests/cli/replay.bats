@@ -229,6 +229,8 @@ flight_log() {
   "$ATTEST" record px4-v1.5.5/rates/gains_differ_by_axis --rate 250 --out whole.ulg
   "$PYTHON" "$SOURCE/tests/cli/thin_log.py" whole.ulg thin.ulg
   run "$ATTEST" replay thin.ulg
+  [ "$status" -eq 2 ]
+  has "it depends on earlier steps, and the log does not have every step"
   lacks "while the integrals are 0"
 }
 

@@ -10,8 +10,8 @@
 namespace attest {
 namespace {
 
-// What a controller of v1.5.5 logged. Up to a thrust of 0.2 its integrals stay 0.
-LoggedUnit logged_controller(float thrust = 0.5f) {
+// What a controller logged. Up to a thrust of 0.2 its integrals stay 0.
+LoggedUnit logged_controller(float thrust = 0.5f, const char* release = "px4-v1.5.5") {
   LoggedUnit log = log_of(Module::mc_att_control, "control_state");
   for (std::uint64_t tick = 0; tick < 100; ++tick) {
     Sample sample;
@@ -27,7 +27,7 @@ LoggedUnit logged_controller(float thrust = 0.5f) {
     sample.in.vehicle_status.is_rotary_wing = 1;
     log.trace.samples.push_back(sample);
   }
-  add_outputs("px4-v1.5.5", {"vehicle_rates_setpoint", "actuator_controls_0", "mc_att_ctrl_status"},
+  add_outputs(release, {"vehicle_rates_setpoint", "actuator_controls_0", "mc_att_ctrl_status"},
               log);
   return log;
 }
@@ -64,6 +64,20 @@ TEST(EvaluateControllerLog, ControlsWithoutDTermAreJudgedWhileTheIntegralsAreZer
   LoggedUnit other = logged_controller(0.1f);
   for (Sample& sample : other.trace.samples) sample.out.actuator_controls_0.control[2] += 0.1f;
   EXPECT_EQ(judged(other).topics.size(), 3u) << "the reference does not agree with the log";
+}
+
+// Its feed-forward is of the change of the setpoint since the step before.
+TEST(EvaluateControllerLog, AnAxisOfV134WithFeedForwardIsNotJudgedAlone) {
+  LoggedUnit log = logged_controller(0.1f, "px4-v1.3.4");
+  log.has_every_step = false;
+  const auto judged = [&] {
+    InProcessHost host(open_builtin());
+    return evaluate_log(log, "px4-v1.3.4", host, {}).value();
+  };
+  ASSERT_EQ(judged().topics.size(), 4u);
+  EXPECT_EQ(judged().topics[3].condition, "yaw and thrust, while the integrals are 0");
+  log.trace.parameters = {{0, "MC_YAWRATE_FF", 0.1f}};
+  EXPECT_EQ(judged().topics.size(), 3u);
 }
 
 }  // namespace
