@@ -177,11 +177,13 @@ std::vector<SelectedCase> split_by_plant(const std::vector<SelectedCase>& cases)
 }
 
 bool has_room_for(const SelectedCase& next, const CasesOfJob& job) {
-  if (plant_of(next) || plant_of(job.front())) return false;
-  if (next.configurations.size() >= many_rates) return false;
-  std::size_t vectors = 0;
+  const auto is_alone = [](const SelectedCase& one) {
+    return plant_of(one) || one.configurations.size() >= many_rates;
+  };
+  if (is_alone(next) || is_alone(job.front())) return false;
+  std::size_t vectors = next.configurations.size();
   for (const SelectedCase& selected : job) vectors += selected.configurations.size();
-  return vectors < most_vectors && next.the_case.profile == job.front().the_case.profile;
+  return vectors <= most_vectors && next.the_case.profile == job.front().the_case.profile;
 }
 
 std::vector<CasesOfJob> cases_of_jobs(const std::vector<SelectedCase>& cases) {
