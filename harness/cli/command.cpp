@@ -1,6 +1,8 @@
 #include "harness/cli/command.hpp"
 
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -56,8 +58,10 @@ Option Option::positive() const {
 Option Option::whole() const {
   // A minus would be taken as a very large number.
   return check([](const std::string& given) {
-    const bool is_whole = !given.empty() && given.size() < 20 &&
-                          given.find_first_not_of("0123456789") == std::string::npos;
+    std::uint64_t number = 0;
+    const char* const end = given.data() + given.size();
+    const auto [rest, wrong] = std::from_chars(given.data(), end, number);
+    const bool is_whole = wrong == std::errc() && rest == end;
     return is_whole ? std::string() : fmt::format("`{}` is no whole number of at least 0", given);
   });
 }

@@ -270,6 +270,7 @@ wrong() {
   wrong "--at-least: \`2\` is no number from 0 to 1; " replay good.csv --at-least 2
   wrong "--jobs: \`x\` is no whole number from 1 to 1024; " run --jobs x
   wrong "--seed: \`-1\` is no whole number of at least 0; " hunt --seed -1
+  wrong "--seed: \`18446744073709551616\` is no whole" hunt --seed 18446744073709551616
   wrong "--shift abc: write a whole number of microseconds" compare good.csv good.csv --shift abc
   wrong "no case matches \`atitude/*\`; did you mean \`attitude/*\`?" run --filter 'atitude/*'
   wrong "no case matches \`rates/p_alon\`; did you mean \`rates/p_alone\`" run --filter rates/p_alon
