@@ -14,10 +14,11 @@ namespace attest {
 namespace {
 
 // The outputs of all faults on one vector, and for each distinct one as a port its similarity to
-// all distinct ones.
+// all distinct ones, and the stages of its first deviation.
 struct Answered {
   FaultAnswers faults;
   std::vector<VectorSimilarity> of_distinct;
+  std::vector<StageSet> stages;
 };
 
 Rate rate_for(const SelectedCase& selected) {
@@ -29,11 +30,7 @@ Rate rate_for(const SelectedCase& selected) {
 
 StageSet first_stages(const Outputs& outputs, const Trace& law) {
   if (outputs.empty()) return {};
-  Trace got = law;
-  for (std::size_t tick = 0; tick < outputs.size(); ++tick) {
-    got.samples[tick].copy_outputs(outputs[tick].sample());
-  }
-  const Comparison comparison = compare(got, law, Tolerances());
+  const Comparison comparison = compare(with_outputs(law, outputs), law, Tolerances());
   return comparison.first ? stages_of(*comparison.first) : StageSet();
 }
 
@@ -100,12 +97,12 @@ Answered answered(const SelectedCase& selected) {
   // A case of the suite, for which the reference has no fault.
   const Trace law =
       reference_outputs(subject, stimulate(selected.the_case, rate_for(selected))).value();
-  Answered vector{answers_of(each_fault(), law, subject), {}};
+  Answered vector{answers_of(each_fault(), law, subject), {}, {}};
   const Outputs right = outputs_of(law);
   for (const Outputs& outputs : vector.faults.distinct) {
     vector.of_distinct.push_back(
         distinct_similarity(outputs, right, vector.faults.distinct, subject.module));
-    vector.of_distinct.back().stages = first_stages(outputs, law);
+    vector.stages.push_back(first_stages(outputs, law));
     vector.of_distinct.back().case_id = selected.the_case.id();
   }
   vector.faults.distinct.clear();  // some hundred megabytes in all
@@ -182,9 +179,10 @@ std::vector<SelfDiagnosis> diagnose_catalogue(const std::vector<SelectedCase>& c
     std::vector<VectorSimilarity> of_fault, passing;
     std::vector<StageLine> lines;
     for (const Answered& vector : vectors) {
-      VectorSimilarity one =
-          of_each_fault(vector.of_distinct[vector.faults.of_fault[i]], vector.faults);
-      if (one.stages.any()) lines.push_back(stage_line(catalogue[i]->stage, one.stages));
+      const std::size_t distinct = vector.faults.of_fault[i];
+      VectorSimilarity one = of_each_fault(vector.of_distinct[distinct], vector.faults);
+      const StageSet& stages = vector.stages[distinct];
+      if (stages.any()) lines.push_back(stage_line(catalogue[i]->stage, stages));
       (one.deviating != 0 ? of_fault : passing).push_back(std::move(one));
     }
     const std::size_t failing = of_fault.size();

@@ -94,7 +94,6 @@ json to_json(const VectorComparison& comparison) {
           {"deviating", similarity.deviating},
           {"misfit", similarity.misfit},
           {"faults", rows},
-          {"stages", similarity.stages.to_ulong()},
           {"stage", to_json(similarity.stage)},
           {"case", similarity.case_id},
           {"observation", attest::to_json(comparison.observation)},
@@ -113,7 +112,6 @@ VectorComparison comparison_from(const json& in) {
     out.similarities.push_back({number(0), number(1), number(2), row.at(3).get<OutputMask>(),
                                 row.at(4).get<OutputMask>(), row.at(5).get<double>()});
   }
-  out.stages = StageSet(in.at("stages").get<unsigned long>());
   out.stage = stage_from(in.at("stage"));
   out.case_id = in.at("case").get<std::string>();
   comparison.observation = observation_from(in.at("observation"));
@@ -123,20 +121,10 @@ VectorComparison comparison_from(const json& in) {
   return comparison;
 }
 
-Trace with_outputs(Trace trace, const Outputs& outputs) {
-  for (std::size_t tick = 0; tick < outputs.size(); ++tick) {
-    trace.samples[tick].copy_outputs(outputs[tick].sample());
-  }
-  return trace;
-}
-
-void find_stages(const Trace& law, const Trace& got, const Tolerances& tolerances,
-                 VectorSimilarity& similarity) {
-  Comparison comparison = compare(got, law, tolerances);
-  if (!comparison.first) comparison = compare(got, law, Tolerances(Level::exact));
-  if (!comparison.first) return;
-  similarity.stages = stages_of(*comparison.first);
-  similarity.stage = stage_of(*comparison.first);
+std::optional<Stage> stage_in(const Trace& law, const Trace& got, const Tolerances& tolerances) {
+  auto first = compare(got, law, tolerances).first;
+  if (!first) first = compare(got, law, Tolerances(Level::exact)).first;
+  return first ? std::optional(stage_of(*first)) : std::nullopt;
 }
 
 std::optional<FirstStage> first_stage(const Trace& got, const Trace& want,
@@ -241,7 +229,7 @@ Result<VectorComparison> ComparisonJob::run(std::size_t) {
   found.similarity = similarity(got, right, answers, subject.module, tolerances);
   found.similarity.case_id = the_case.id();
   if (vector_.outputs) {
-    find_stages(*law, with_outputs(*law, got), tolerances, found.similarity);
+    found.similarity.stage = stage_in(*law, with_outputs(*law, got), tolerances);
   }
   if (observes_) {
     const Outputs& expected = answers.distinct[answers.of_fault.front()];

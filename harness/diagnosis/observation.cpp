@@ -185,10 +185,7 @@ void Observed::add(const Observed& other) {
 
 Observation observe(const Trace& given, const Outputs& port, const Outputs& expected,
                     const ModuleUnderTest& subject, const Tolerances& tolerances) {
-  Trace right = given;
-  for (std::size_t tick = 0; tick < expected.size(); ++tick) {
-    right.samples[tick].copy_outputs(expected[tick].sample());
-  }
+  const Trace right = with_outputs(given, expected);
   const std::vector<Condition> conditions = conditions_of(right, subject);
   Observation observation;
   const std::vector<Compared> outputs =

@@ -41,8 +41,8 @@ struct ObservedVector {
 // from the others: the more clearly, the more often its kind holds by chance. A condition of a
 // parameter is named only if there is nothing else to say.
 //
-// Patterns with a relation or a condition of the law come before others, and those of more vectors
-// before those of fewer.
+// Patterns with a relation, or with a condition that is not of a parameter, come before others, and
+// those of more vectors before those of fewer.
 std::vector<Pattern> patterns_of(const std::vector<ObservedVector>& vectors);
 
 }  // namespace attest

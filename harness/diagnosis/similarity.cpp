@@ -137,6 +137,13 @@ Outputs outputs_of(const Trace& trace) {
   return outputs;
 }
 
+Trace with_outputs(Trace trace, const Outputs& outputs) {
+  for (std::size_t tick = 0; tick < outputs.size(); ++tick) {
+    trace.samples[tick].copy_outputs(outputs[tick].sample());
+  }
+  return trace;
+}
+
 std::string hex_of(const Outputs& outputs) {
   constexpr const char* digits = "0123456789abcdef";
   std::string text;

@@ -45,8 +45,7 @@ struct VectorSimilarity {
   std::size_t ticks = 0;
   OutputMask deviating = 0;              // outputs in which the port deviates from the law
   std::vector<Similarity> similarities;  // of each hypothesis, or of each distinct one
-  StageSet stages = {};                  // of the port's first deviation (stages_of())
-  std::optional<Stage> stage = {};       // of the same, as reports count it (stage_of())
+  std::optional<Stage> stage = {};       // of the port's first deviation (stage_of())
   std::string case_id = {};
   double misfit = 0;  // of the law (Similarity::misfit)
 
@@ -65,6 +64,7 @@ struct Answer {
 using Outputs = std::vector<Answer>;  // one per tick
 
 Outputs outputs_of(const Trace& trace);
+Trace with_outputs(Trace trace, const Outputs& outputs);
 // As text, for other processes.
 std::string hex_of(const Outputs& outputs);
 Outputs outputs_from(const std::string& hex);
