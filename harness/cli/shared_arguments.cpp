@@ -59,10 +59,11 @@ void add_port(Command command, HostOptions& host, Ports accepted) {
 
 void add_timeout(Command command, double& timeout_s) {
   command
-      .option("--timeout", timeout_s,
-              "Limit for each answer of the port [s]: a library answers with a whole trace, "
-              "in stress with a step; a program with a step or a batch of steps. Counts the CPU "
-              "time of the port's processes; they may sleep three times as long")
+      .option(
+          "--timeout", timeout_s,
+          "Limit for each answer of the port [s]: a library answers with 2,048 ticks of a trace "
+          "or a whole flight, in stress with a step; a program with a step or a batch of steps. "
+          "Counts the CPU time of the port's processes; they may sleep three times as long")
       .range(0.1, 86400.0)
       .shows_default()
       .group(option_group::execution);

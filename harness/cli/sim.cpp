@@ -140,9 +140,9 @@ Result<std::vector<SimulatedFlight>> fly_all(const Sim& sim, const HostOptions& 
   return flights;
 }
 
-// The flight of a name without a profile, such as `hover`: that of the newest profile that the port
-// supports. Asks the port about every profile. Empty: the name has a profile, or no profile of the
-// port has such a flight.
+// The flight of a name without a profile, such as `hover`: that of the first profile, in the order
+// of known_profile_names(), that the port supports. Asks the port about every profile. Empty: the
+// name has a profile, or no profile of the port has such a flight.
 std::optional<Sim> flight_of_port(const SimOptions& options, const Globals& globals) {
   const bool is_bare = options.timing.empty() && options.rate.empty() &&
                        options.case_name.find_first_of("/.*?[") == std::string::npos;

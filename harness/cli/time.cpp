@@ -235,8 +235,10 @@ int time_command(const TimeCommandOptions& options, const Globals& globals) {
               port->port.name,
               measure.counter};
   const VectorTimes* const slowest = run.times.with_slowest_step();
-  if (!slowest) diversion.end();
-  if (!slowest) return report_untimed(run, options, *cases);
+  if (!slowest) {
+    diversion.end();
+    return report_untimed(run, options, *cases);
+  }
   if (!options.measure.worst.empty()) {
     const auto written = write_slowest(run.times, *cases, host, *std::move(worst));
     if (!written) return report_error(written.error());
