@@ -105,6 +105,21 @@ TEST(PortProcess, DrivesTheSameInParts) {
   }
 }
 
+// The process gets it in several requests, and keeps the integral.
+TEST(PortProcess, DrivesALongTraceAsHere) {
+  Case the_case =
+      case_of("[control_state]\npitch_rate = 0.001\n[parameters]\nMC_PITCHRATE_I = 0.3\n");
+  the_case.duration = {2 * ticks_at_once + 1, Span::In::ticks};
+  Trace here = stimulate(the_case, Rate::hz(250)), apart = here;
+  EXPECT_FALSE(host_of("builtin", true)->drive(unit, here));
+  EXPECT_FALSE(host_of("builtin")->drive(unit, apart));
+  EXPECT_TRUE(same_samples(here.samples, apart.samples));
+  const auto integral = [&](std::size_t tick) {
+    return here.samples[tick].out.mc_att_ctrl_status.pitch_rate_integ;
+  };
+  EXPECT_NE(integral(2 * ticks_at_once), integral(ticks_at_once));
+}
+
 // As after a mistake in the middle of a file.
 TEST(PortProcess, ATraceThatWasNotDrivenToItsEndLeavesNoInstance) {
   Trace first = pitching(), whole = pitching();

@@ -251,14 +251,21 @@ TEST(Jobs, FailFastEndsWithTheFirstResultThatFailsInTheirOrder) {
 }
 
 TEST(Jobs, FailFastDoesNotRunTheRestOfAJob) {
-  const Task ends = []() -> Result<std::string> { ::_exit(EXIT_FAILURE); };
-  JobOptions<std::string> options = with(1);
-  options.fail_fast = true;
-  options.fails = [](const std::string& result) { return result == "bad"; };
-  const auto outcome = run_jobs(jobs_of({{says("good"), says("bad"), ends}}), options);
-  EXPECT_THAT(outcome.results, ElementsAre("good", "bad"));
-  EXPECT_THAT(outcome.errors, IsEmpty());
-  EXPECT_TRUE(outcome.stopped_early);
+  const TemporaryDirectory folder;
+  const auto mark = folder.path() / "ran";
+  const Task leaves_a_mark = [&]() -> Result<std::string> {
+    std::ofstream(mark) << "x";
+    return "more";
+  };
+  const auto jobs = jobs_of({{says("good"), says("bad"), leaves_a_mark}});
+  for (auto options : {with(1), in_process()}) {
+    options.fail_fast = true;
+    options.fails = [](const std::string& result) { return result == "bad"; };
+    const auto outcome = run_jobs(jobs, options);
+    EXPECT_THAT(outcome.results, ElementsAre("good", "bad"));
+    EXPECT_TRUE(outcome.stopped_early);
+    EXPECT_FALSE(std::filesystem::exists(mark));
+  }
 }
 
 TEST(Jobs, AFailureAtTheEndStopsNothing) {
