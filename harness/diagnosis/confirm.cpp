@@ -17,6 +17,45 @@ constexpr double enough_needed = 3, least_confirmed_often = 0.15;
 // without it. At first it is larger, because other mistakes are not found yet.
 constexpr double most_farther = 0.15, most_farther_at_first = 0.5;
 
+// How all suspects together agree with the port where one of them acts. Places are outputs of
+// vectors, as in Score.
+struct Confirmation {
+  // Places where it acts, and those of them that have the port's values.
+  double acting = 0, confirmed = 0;
+  // Places that have the port's values only with it.
+  double needed = 0;
+  // Vectors that are nearer to the port with it, or without it.
+  double nearer = 0, farther = 0;
+  // Vectors with the port's values up to the tick at which it first acts: those with the port's
+  // values at this tick, too, and those without. What comes later may be of other mistakes.
+  double right_at_first = 0, wrong_at_first = 0;
+
+  // `alone`: the suspect; `all`: all suspects; `without`: all but this one.
+  void add(const VectorSimilarity& vector, const Similarity& alone, const Similarity& all,
+           const Similarity& without) {
+    const OutputMask places = alone.deviating;
+    if (places == 0) return;
+    acting += weight(places, vector);
+    confirmed += weight(places & ~all.parted, vector);
+    needed += weight(~all.parted & without.parted & vector.deviating, vector);
+    nearer += all.misfit < without.misfit ? 1 : 0;
+    farther += all.misfit > without.misfit ? 1 : 0;
+    right_at_first += all.parts > alone.acts ? 1 : 0;
+    wrong_at_first += all.parts == alone.acts && (places & all.parted) != 0 ? 1 : 0;
+  }
+
+  double share() const { return acting == 0 ? 0 : confirmed / acting; }
+
+  bool is_refuted(bool at_last) const {
+    const double most = at_last ? most_farther : most_farther_at_first;
+    if (needed == 0 || farther > most * (nearer + farther)) return true;
+    const double least = needed < enough_needed ? least_confirmed : least_confirmed_often;
+    return at_last && (share() < least || wrong_at_first > right_at_first);
+  }
+
+  double refutation() const { return 1 - share() + farther / std::max(1.0, nearer + farther); }
+};
+
 }  // namespace
 
 // Of similarities of all suspects, and then of all but each one: the suspect that the others refute
@@ -27,29 +66,14 @@ std::optional<std::size_t> Search::worst_suspect(const std::vector<VectorSimilar
   double largest = 0;
   for (std::size_t i = 0; i < suspects_.size(); ++i) {
     const std::size_t fault = index_in_catalogue(*suspects_[i].fault);
-    double acting = 0, confirmed = 0, nearer = 0, farther = 0, needed = 0;
+    Confirmation confirmation;
     for (std::size_t v = 0; v < together.size(); ++v) {
-      const VectorSimilarity& vector = together[v];
-      const Similarity& all = vector.similarities.front();
-      const Similarity& without = vector.similarities[i + 1];
-      const OutputMask places = alone_[v].similarities[fault].deviating;
-      if (places == 0) continue;
-      acting += weight(places, vector);
-      confirmed += weight(places & ~all.parted, vector);
-      needed += weight(~all.parted & without.parted & vector.deviating, vector);
-      nearer += all.misfit < without.misfit ? 1 : 0;
-      farther += all.misfit > without.misfit ? 1 : 0;
+      const auto& of_vector = together[v].similarities;
+      confirmation.add(together[v], alone_[v].similarities[fault], of_vector.front(),
+                       of_vector[i + 1]);
     }
-    const double share = acting == 0 ? 0 : confirmed / acting;
-    const bool is_doubtful =
-        share < (needed < enough_needed ? least_confirmed : least_confirmed_often);
-    const bool is_refuted =
-        needed == 0 ||
-        farther > (at_last ? most_farther : most_farther_at_first) * (nearer + farther) ||
-        (at_last && is_doubtful);
-    const double refutation = 1 - share + farther / std::max(1.0, nearer + farther);
-    if (!is_refuted || refutation < largest) continue;
-    largest = refutation;
+    if (!confirmation.is_refuted(at_last) || confirmation.refutation() < largest) continue;
+    largest = confirmation.refutation();
     worst = i;
   }
   return worst;

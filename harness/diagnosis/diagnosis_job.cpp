@@ -88,7 +88,8 @@ json to_json(const VectorComparison& comparison) {
   const VectorSimilarity& similarity = comparison.similarity;
   json rows = json::array();
   for (const Similarity& one : similarity.similarities) {
-    rows.push_back({one.matched, one.same, one.other, one.deviating, one.parted, one.misfit});
+    rows.push_back({one.matched, one.same, one.other, one.deviating, one.parted, one.misfit,
+                    one.acts, one.parts});
   }
   return {{"ticks", similarity.ticks},
           {"deviating", similarity.deviating},
@@ -110,7 +111,8 @@ VectorComparison comparison_from(const json& in) {
   for (const json& row : in.at("faults")) {
     const auto number = [&row](std::size_t i) { return row.at(i).get<std::size_t>(); };
     out.similarities.push_back({number(0), number(1), number(2), row.at(3).get<OutputMask>(),
-                                row.at(4).get<OutputMask>(), row.at(5).get<double>()});
+                                row.at(4).get<OutputMask>(), row.at(5).get<double>(), number(6),
+                                number(7)});
   }
   out.stage = stage_from(in.at("stage"));
   out.case_id = in.at("case").get<std::string>();

@@ -84,6 +84,8 @@ Similarity similarity_of(const OutputTable& outputs, const Outputs& port, const 
     result.other += static_cast<std::size_t>(std::popcount(fault_deviates & parted));
     result.deviating |= fault_deviates;
     result.parted |= parted;
+    if (fault_deviates != 0) result.acts = std::min(result.acts, tick);
+    if (parted != 0) result.parts = std::min(result.parts, tick);
   }
   result.misfit = misfit(outputs, port, fault);
   return result;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -39,6 +40,10 @@ struct Similarity {
   // The distance of port and hypothesis: the sum of log2(1 + |difference| / tolerance) of all
   // values, each at most 10. So it counts how near a value is, whatever its size.
   double misfit = 0;
+  std::size_t acts = never;   // the first tick at which the hypothesis deviates from the law
+  std::size_t parts = never;  // the first tick at which port and hypothesis differ
+
+  static constexpr std::size_t never = std::numeric_limits<std::size_t>::max();
 };
 
 struct VectorSimilarity {

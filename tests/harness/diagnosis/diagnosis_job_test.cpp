@@ -219,8 +219,9 @@ TEST(DiagnosisCodec, AnAnswerComesBackAsItWas) {
 
 TEST(DiagnosisCodec, AComparisonComesBackAsItWas) {
   VectorComparison sent;
-  sent.similarity = {30,           5,  {{1, 2, 3, 4, 6, 0.5}, {7, 8, 9, 10, 11, 12}}, Stage::mixer,
-                     "modes/acro", 1.5};
+  sent.similarity = {
+      30,           5,  {{1, 2, 3, 4, 6, 0.5}, {7, 8, 9, 10, 11, 12, 13, 14}}, Stage::mixer,
+      "modes/acro", 1.5};
   sent.first = FirstStage{Stage::sticks, Stage::attitude_law};
   Observed& observed = sent.observation[{Stage::rate_law, 2}];
   observed.all = {3, 4};
@@ -240,6 +241,9 @@ TEST(DiagnosisCodec, AComparisonComesBackAsItWas) {
   EXPECT_EQ(last.deviating, 10u);
   EXPECT_EQ(last.parted, 11u);
   EXPECT_EQ(last.misfit, 12);
+  EXPECT_EQ(last.acts, 13u);
+  EXPECT_EQ(last.parts, 14u);
+  EXPECT_EQ(one.similarity.similarities[0].acts, Similarity::never);
   const Observed& back = one.observation.at({Stage::rate_law, 2});
   EXPECT_EQ(back.all.deviating, 3u);
   ASSERT_THAT(back.where, SizeIs(1));

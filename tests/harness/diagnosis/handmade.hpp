@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -47,6 +48,11 @@ class HandMade {
   // The port has a mistake that is no fault.
   HandMade& differs(std::size_t first, std::size_t end, std::size_t output, double value) {
     for (std::size_t v = first; v < end; ++v) port_.at(v).at(output) += value;
+    return *this;
+  }
+  // In these vectors a mistake that is no fault deviates a tick before all faults.
+  HandMade& deviates_before(std::size_t first, std::size_t end) {
+    for (std::size_t v = first; v < end; ++v) before_.insert(v);
     return *this;
   }
   HandMade& deviates_first(std::size_t vector, Stage stage) {
@@ -93,6 +99,8 @@ class HandMade {
         if (sum[i] != port_[v][i]) one.parted |= 1U << i;
         one.misfit += std::log2(1 + std::abs(sum[i] - port_[v][i]));
       }
+      if (one.deviating != 0) one.acts = 1;
+      if (one.parted != 0) one.parts = before_.contains(v) ? 0 : 1;
       one.matched = one.parted == 0 ? 1 : 0;
       vector.similarities.push_back(one);
     }
@@ -103,6 +111,7 @@ class HandMade {
   std::map<std::string_view, std::vector<Vector>> effects_;
   std::vector<Vector> port_;
   std::map<std::size_t, Stage> stages_;
+  std::set<std::size_t> before_;
 };
 
 inline std::vector<std::string_view> ids_of(const std::vector<const faults::Fault*>& faults) {

@@ -224,10 +224,25 @@ TEST(Several, AFaultThatIsLikeAMistakeUnderFewConditionsIsNotNamed) {
                          .acts(yaw_fault, 0, 10, 0, 4)
                          .differs(0, 1, 0, 4)
                          .differs(1, 10, 0, 5)
+                         .deviates_before(1, 10)
                          .diagnosed();
   ASSERT_TRUE(found);
   EXPECT_THAT(found->suspects, IsEmpty());
   EXPECT_EQ(found->unexplained, 10u);
+}
+
+// It explains an output in all vectors. But another output, in which it acts as well, has other
+// values from the first tick on.
+TEST(Several, AFaultThatIsMostlyWrongWhereItFirstActsIsNotNamed) {
+  const auto port = [](std::size_t wrong) {
+    HandMade made(20, 0);
+    made.acts(yaw_fault, 0, 20, 0, 4).acts(yaw_fault, 0, 20, 1, 4).has(yaw_fault);
+    return made.differs(0, wrong, 1, 2);
+  };
+  EXPECT_THAT(suspected(*port(10).diagnosed()), ElementsAre(yaw_fault));
+  EXPECT_THAT(suspected(*port(11).diagnosed()), IsEmpty());
+  EXPECT_THAT(suspected(*port(11).deviates_before(0, 11).diagnosed()), ElementsAre(yaw_fault))
+      << "another mistake may be the cause";
 }
 
 // Without the pair, this fault has the port's values in one vector by chance.
