@@ -104,6 +104,15 @@ void choose_profile(FlightLog& log) {
                              names);
 }
 
+// The law of another release explains a log badly, and then the log judges no port.
+void take_given(const std::string& profile, FlightLog& log) {
+  log.profile = profile;
+  const std::string own = profile_of(log);
+  if (own.empty() || own == profile) return;
+  log.notes.push_back(fmt::format("PX4 {} wrote the log, whose profile is {}, but --profile is {}",
+                                  log.release->to_string(), own, profile));
+}
+
 // A profile that attest does not know is accepted, because a port may know it.
 void check_profile(FlightLog& log) {
   const ProfileInfo* const known = find_profile(log.profile);
@@ -119,7 +128,7 @@ Result<FlightLog> read_any_log(const std::string& file, const std::vector<std::s
                                const std::string& profile, bool whole) {
   auto log = read_as<&FileFormat::read_log>(file, assumed, whole);
   if (!log) return log;
-  if (!profile.empty()) log->profile = profile;
+  if (!profile.empty()) take_given(profile, *log);
   choose_profile(*log);
   check_profile(*log);
   if (log->units.size() > 1 && !log->too_little.empty()) log->notes.push_back(log->too_little);

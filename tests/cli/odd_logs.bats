@@ -81,6 +81,10 @@ flight() {
   run "$ATTEST" replay build.ulg
   has "because PX4 v1.5.5 wrote the log"
   lacks "may differ"
+  run "$ATTEST" replay build.ulg --profile v1.5.5
+  lacks "wrote the log"
+  run "$ATTEST" replay build.ulg --profile v1.3.4
+  has "PX4 v1.5.5 wrote the log, whose profile is px4-v1.5.5, but --profile is px4-v1.3.4"
 }
 
 @test "a release without a profile is named, with the nearest one" {
