@@ -48,6 +48,8 @@ struct Diagnosis {
   std::string specific_case;
   std::size_t shown_by_it = 0;
   std::string why;  // its `why`, filled in by the caller of diagnose()
+
+  bool explains_all() const { return !suspects.empty() && unexplained == 0; }
 };
 
 // A vector at the level exact: whether it deviates at the level numeric, and which functions of the

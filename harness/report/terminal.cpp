@@ -326,7 +326,7 @@ std::string render_summary(const RunResult& run, double wall_s, TerminalStyle st
   out += errors(run, style);
   out += failed_cases(run);
   if (const std::string stages = first_stages(run); !stages.empty()) out += stages + "\n";
-  if (diagnosis) out += specific_case_text(*diagnosis);
+  if (diagnosis && !diagnosis->explains_all()) out += specific_case_text(*diagnosis);
   out += conformance(run);
   if (const std::string lacks = needless_lacks_text(run); !lacks.empty()) out += lacks + "\n";
   if (diagnosis) out += mistakes_text(*diagnosis);

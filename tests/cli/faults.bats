@@ -44,15 +44,14 @@ load common
   done
 }
 
-@test "each report has the purpose of the most specific failing case" {
+@test "each report for CI has the purpose of the most specific failing case" {
   run "$ATTEST" run --port fault:acro-pitch-reversed --rate 250 --group modes --profile px4-v1.5.5 \
     --json report.json --junit report.xml --html report.html
   [ "$status" -eq 1 ]
-  has "most specific failing case: px4-v1.5.5/modes/"
+  lacks "most specific failing case" # because the fault explains all
   why=$(python3 -c 'import json
 print(json.load(open("report.json"))["diagnosis"]["specific_case"]["why"])')
   [ -n "$why" ]
-  has "it tests: $why"
   grep -qF "it tests: $why" report.xml
   grep -qF "It tests: $why" report.html
 }
@@ -62,6 +61,7 @@ print(json.load(open("report.json"))["diagnosis"]["specific_case"]["why"])')
   [ "$status" -eq 1 ]
   has "it looks like no fault of the catalogue"
   has "first stage to differ: attitude law in "
+  has "most specific failing case: px4-v1.5.5/"
 }
 
 @test "all mistakes of a port are listed, also those that act everywhere at once" {

@@ -88,10 +88,14 @@ TEST(DiagnosisText, IsAboveTheVerdict) {
   diagnosis.suspects = {{faults::find_fault("yaw-reversed"), 9, 9, {}}};
   diagnosis.specific_case = "px4-v1.5.5/modes/acro";
   diagnosis.why = "A stick.";
-  const std::string text = render_summary(sample_run(), 1, {}, diagnosis);
+  diagnosis.unexplained = 1;
+  std::string text = render_summary(sample_run(), 1, {}, diagnosis);
   EXPECT_THAT(text, testing::ContainsRegex("\nit looks like:\n  `yaw-reversed`[^\n]*\n"
-                                           "      gives [^\n]*\nFAIL [^\n]*\n$"));
+                                           "      gives [^\n]*\n1 of [^\n]*\nFAIL [^\n]*\n$"));
   EXPECT_LT(text.find("it tests: A stick."), text.find("\nconformance:"));
+  diagnosis.unexplained = 0;
+  text = render_summary(sample_run(), 1, {}, diagnosis);
+  EXPECT_THAT(text, Not(HasSubstr("it tests: A stick."))) << "the mistake is known";
 }
 
 TEST(DiagnosisText, EndsWithThePurposeOfTheMostSpecificCase) {
