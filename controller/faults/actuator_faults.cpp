@@ -156,6 +156,21 @@ const Fault actuators[] = {
      },
      {},
      mc_att_control::from_v1_5_5},
+    {"gear-only-armed",
+     "actuators",
+     Stage::output,
+     "outputs the landing gear only while armed",
+     "a landing gear while disarmed",
+     "a helpful extra",
+     [](FaultyLaw& law) {
+       change_controls(law, [armed = false](Controls& control, const attest_inputs& in) mutable {
+         if ((in.updated & ATTEST_UPDATED_ACTUATOR_ARMED) != 0)
+           armed = in.actuator_armed.armed != 0;
+         if (!armed) control[7] = 0;
+       });
+     },
+     {},
+     mc_att_control::from_v1_5_5},
     {"gear-on-4",
      "actuators",
      Stage::output,

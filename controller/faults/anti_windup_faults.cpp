@@ -60,6 +60,19 @@ void change_flags(FaultyLaw& law, Change change) {
   also_before(law, [change](attest_inputs& in) mutable { change(in.multirotor_motor_limits, in); });
 }
 
+void reset_below_takeoff(FaultyLaw& law) {
+  auto below = std::make_shared<bool>(false);
+  law.rate.may_integrate = [below](float thrust, MotorLimits limits) {
+    *below = !(thrust > takeoff_thrust);
+    return *below || RateStages::Law::may_integrate(thrust, limits);
+  };
+  law.rate.integrate_axis = [below](float integral, float control, float thrust, float growth,
+                                    bool frozen) {
+    return *below ? 0.0f
+                  : RateStages::Law::integrate_axis(integral, control, thrust, growth, frozen);
+  };
+}
+
 const Fault anti_windup_list[] = {
     {"gate-takeoff-dropped", "anti_windup", Stage::gate, "integrates at any thrust",
      "thrust below 0.2", "a condition dropped",
@@ -67,9 +80,15 @@ const Fault anti_windup_list[] = {
     {"gate-takeoff-at-0", "anti_windup", Stage::gate, "integrates above zero thrust",
      "thrust between 0 and 0.2", "wrong branch threshold",
      [](FaultyLaw& law) { open_gate(law, [](float thrust) { return thrust > 0; }); }},
+    {"gate-takeoff-at-0.1", "anti_windup", Stage::gate, "integrates from a thrust of 0.1",
+     "thrust between 0.1 and 0.2", "wrong branch threshold",
+     [](FaultyLaw& law) { open_gate(law, [](float thrust) { return thrust > 0.1f; }); }},
     {"gate-takeoff-not-strict", "anti_windup", Stage::gate, "integrates at a thrust of 0.2",
      "thrust of exactly 0.2", "a condition made non-strict",
      [](FaultyLaw& law) { open_gate(law, [](float thrust) { return thrust == takeoff_thrust; }); }},
+    {"gate-takeoff-resets", "anti_windup", Stage::gate,
+     "sets the integrals to 0 at a thrust up to 0.2", "thrust below 0.2 after some integration",
+     "a helpful extra", reset_below_takeoff},
     {"gate-lower-dropped", "anti_windup", Stage::gate, "integrates at the lower motor limit",
      "the lower limit", "a condition dropped",
      [](FaultyLaw& law) {

@@ -82,16 +82,36 @@ void reset_when_landed(FaultyLaw& law) {
       *landed = in.vehicle_land_detected.landed != 0 || in.vehicle_land_detected.maybe_landed != 0;
     }
   });
-  law.rate_unit.step.resets_integral = [landed](const cascade::RateTopics& topics) {
-    return *landed || RateStepStages::Law::resets_integral(topics);
+  auto& resets = law.rate_unit.step.resets_integral;
+  resets = [landed, then = resets](const cascade::RateTopics& topics) {
+    return then(topics) || *landed;
+  };
+}
+
+// Also resets the integral while the thrust is below 5%, as firmwares for races do.
+void reset_when_idle(FaultyLaw& law) {
+  auto is_idle = std::make_shared<bool>(true);
+  also_before(law.rate_unit, [is_idle](RateIn& in) {
+    if ((in.updated & ATTEST_RATE_UPDATED_VEHICLE_RATES_SETPOINT) == 0) return;
+    *is_idle = in.vehicle_rates_setpoint.thrust_body[2] > -0.05f;
+  });
+  auto& step = law.rate_unit.step;
+  step.acro = [is_idle, then = step.acro](const auto& sticks, const auto& gains) {
+    const auto setpoint = then(sticks, gains);
+    *is_idle = setpoint.thrust_B[2] > -0.05f;
+    return setpoint;
+  };
+  step.resets_integral = [is_idle, then = step.resets_integral](const cascade::RateTopics& topics) {
+    return then(topics) || *is_idle;
   };
 }
 
 template <typename Change>
 void change_reset_topics(FaultyLaw& law, Change change) {
-  law.rate_unit.step.resets_integral = [change](cascade::RateTopics topics) mutable {
+  auto& resets = law.rate_unit.step.resets_integral;
+  resets = [change, then = resets](cascade::RateTopics topics) mutable {
     change(topics);
-    return RateStepStages::Law::resets_integral(topics);
+    return then(topics);
   };
 }
 
@@ -281,6 +301,8 @@ const Fault integral_list[] = {
          in.vehicle_land_detected = {0, 0};
        });
      }},
+    {"cascade-idle-resets", "modes", Stage::gate, "resets the integral at a thrust below 5%",
+     "a thrust of 0", "a helpful extra", reset_when_idle},
     {"cascade-disarmed-keeps-integral", "landed", Stage::arming,
      "does not reset the integral while disarmed", "disarming with an integral", "a missing reset",
      [](FaultyLaw& law) {

@@ -265,6 +265,13 @@ const Fault mode_list[] = {
          if (now_us - topics.autotune.timestamp >= 100000) topics.autotune.state = 0;
        });
      }},
+    {"cascade-autotune-old-after-1-ms", "modes", Stage::autotune,
+     "drops autotune samples after 1 ms", "a sample of 10 ms ago", "a wrong unit",
+     [](FaultyLaw& law) {
+       change_autotune(law, [](Topics& topics, std::uint64_t& now_us) {
+         if (now_us - topics.autotune.timestamp >= 1000) topics.autotune.state = 0;
+       });
+     }},
     {"cascade-autotune-once", "modes", Stage::latching,
      "adds the rates of autotune only in the step of the sample", "one autotune sample",
      "a missing latch", autotune_of_new_sample},

@@ -134,6 +134,14 @@ const Fault model_list[] = {
     {"cascade-model-dt-from-dropped", "reference_model", Stage::reference_model,
      "counts the time from a setpoint that it dropped", "an old setpoint", "another state",
      measure_from_dropped},
+    {"cascade-model-decay-linear", "reference_model", Stage::reference_model,
+     "takes 1 - k, at least 0, for exp(-k)", "any error", "an approximation",
+     [](FaultyLaw& law) {
+       change_decay(law, [](Decay& left, Scalar elapsed_s, Scalar natural, Scalar) {
+         const Scalar k = natural * elapsed_s, E = std::max(1 - k, 0.0f);
+         left = {(1 + k) * E, elapsed_s * E, ((natural * natural) * elapsed_s) * E, (1 - k) * E};
+       });
+     }},
     {"cascade-model-dt-fixed", "reference_model", Stage::reference_model,
      "takes 4 ms for the time between setpoints", "setpoints at a rate other than 250 Hz",
      "a fixed rate",

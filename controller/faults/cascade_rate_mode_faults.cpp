@@ -15,17 +15,19 @@ using AcroSetpoint = RateStepStages::Setpoint;
 // Changes the sticks and gains of acro before use. Change is void(AcroSticks&, AcroGains&).
 template <typename Change>
 void change_acro_input(FaultyLaw& law, Change change) {
-  law.rate_unit.step.acro = [change](AcroSticks sticks, AcroGains gains) {
+  law.rate_unit.step.acro = [change, then = law.rate_unit.step.acro](AcroSticks sticks,
+                                                                     AcroGains gains) {
     change(sticks, gains);
-    return RateStepLaw::acro(sticks, gains);
+    return then(sticks, gains);
   };
 }
 
 // Changes the setpoint that acro computes. Change is void(AcroSetpoint&, const AcroSticks&).
 template <typename Change>
 void change_acro(FaultyLaw& law, Change change) {
-  law.rate_unit.step.acro = [change](const AcroSticks& sticks, const AcroGains& gains) {
-    AcroSetpoint setpoint = RateStepLaw::acro(sticks, gains);
+  law.rate_unit.step.acro = [change, then = law.rate_unit.step.acro](const AcroSticks& sticks,
+                                                                     const AcroGains& gains) {
+    AcroSetpoint setpoint = then(sticks, gains);
     change(setpoint, sticks);
     return setpoint;
   };
@@ -52,6 +54,21 @@ void latch_rate_topic_always(FaultyLaw& law) {
   also_before(law.rate_unit, [](RateIn& in) { in.updated |= topic; });
 }
 
+// Scales the rates. Scale is Scalar(stick, superexpo), both within their limits.
+template <typename Scale>
+void scale_acro(FaultyLaw& law, Scale scale) {
+  law.rate_unit.step.acro = [scale, then = law.rate_unit.step.acro](const AcroSticks& sticks,
+                                                                    const AcroGains& gains) {
+    AcroSetpoint setpoint = then(sticks, gains);
+    const float stick[] = {sticks.roll, -sticks.pitch, sticks.yaw};
+    for (int i = 0; i < 3; ++i) {
+      setpoint.rates_B[i] *= scale(cascade::clamp(stick[i], -1.0f, 1.0f),
+                                   cascade::clamp(gains.superexpo[i], 0.0f, 0.99f));
+    }
+    return setpoint;
+  };
+}
+
 const Fault acro_list[] = {
     {"cascade-acro-expo-ignored", "acro", Stage::sticks, "does not read MC_ACRO_EXPO",
      "an expo and a stick at half", "a missing curve",
@@ -62,6 +79,20 @@ const Fault acro_list[] = {
      "a superexpo and a stick at half", "a missing curve",
      [](FaultyLaw& law) {
        change_acro_input(law, [](AcroSticks&, AcroGains& gains) { gains.superexpo.setZero(); });
+     }},
+    {"cascade-acro-superexpo-not-scaled", "acro", Stage::sticks,
+     "makes the ends of the stick faster than MC_ACRO_R_MAX instead of the centre slower",
+     "a superexpo and a stick at half", "a missing scale",
+     [](FaultyLaw& law) {
+       scale_acro(law, [](Scalar, Scalar steeper) { return 1 / (1 - steeper); });
+     }},
+    {"cascade-acro-superexpo-signed", "acro", Stage::sticks,
+     "has a superexpo that is flatter for negative sticks: no absolute value",
+     "a superexpo and a stick at -0.5", "a sign",
+     [](FaultyLaw& law) {
+       scale_acro(law, [](Scalar stick, Scalar steeper) {
+         return (1 - std::abs(stick) * steeper) / (1 - stick * steeper);
+       });
      }},
     {"cascade-acro-expo-of-roll", "acro", Stage::sticks, "has the curve of roll for yaw, too",
      "curves that differ", "wrong axis",

@@ -46,6 +46,20 @@ void measure_rate(FaultyLaw& law, Measure measured) {
   measure(law.rate_unit, rate_bounds, measured);
 }
 
+// A step that controls the rates asks whether it resets the integral.
+void keep_time_while_controlled(FaultyLaw& law) {
+  auto now = std::make_shared<std::uint64_t>(0), last = std::make_shared<std::uint64_t>(0);
+  law.rate_unit.step.step_time = [now, last](std::uint64_t now_us, std::uint64_t) {
+    *now = now_us;
+    return RateStepStages::Law::step_time(now_us, *last);
+  };
+  auto& resets = law.rate_unit.step.resets_integral;
+  resets = [now, last, then = resets](const cascade::RateTopics& topics) {
+    *last = *now;
+    return then(topics);
+  };
+}
+
 // The timestamps are converted to type Integer. Their difference does not wrap around.
 template <typename Integer>
 float difference_as(std::uint64_t now_us, std::uint64_t last_us) {
@@ -117,6 +131,11 @@ const Fault timing_list[] = {
      "missing clamp",
      [](FaultyLaw& law) {
        set_bounds(law.attitude_unit, {0.0002f, 1e9f});
+     }},
+    {"cascade-attitude-dt-unclamped", "timing", Stage::timing,
+     "does not bound dt of the attitude unit", "a gap of more than 20 ms", "missing clamp",
+     [](FaultyLaw& law) {
+       set_bounds(law.attitude_unit, {0, 1e9f});
      }},
     {"cascade-attitude-dt-to-50-ms", "timing", Stage::timing,
      "limits dt of the attitude unit to 50 ms or less", "a gap of more than 20 ms", "wrong clamp",
@@ -193,11 +212,29 @@ const Fault timing_list[] = {
      [](FaultyLaw& law) {
        set_bounds(law.rate_unit, {0.000125f, 1e9f});
      }},
+    {"cascade-rate-dt-unclamped", "timing", Stage::timing, "does not bound dt of the rate unit",
+     "a gap of more than 20 ms, or two samples of one time", "missing clamp",
+     [](FaultyLaw& law) {
+       set_bounds(law.rate_unit, {0, 1e9f});
+     }},
     {"cascade-rate-dt-to-50-ms", "timing", Stage::timing,
      "limits dt of the rate unit to 50 ms or less", "a gap of more than 20 ms", "wrong clamp",
      [](FaultyLaw& law) {
        set_bounds(law.rate_unit, {0.000125f, 0.05f});
      }},
+    {"cascade-rate-dt-to-0.2-s", "timing", Stage::timing,
+     "limits dt of the rate unit to 0.2 s or less", "a gap of more than 20 ms", "wrong clamp",
+     [](FaultyLaw& law) {
+       set_bounds(law.rate_unit, {0.000125f, 0.2f});
+     }},
+    {"cascade-rate-dt-fixed-at-4-ms", "timing", Stage::timing, "uses 4 ms as dt of the rate unit",
+     "any rate except 250 Hz", "a fixed rate",
+     [](FaultyLaw& law) {
+       measure_rate(law, [](std::uint64_t, std::uint64_t) { return 0.004f; });
+     }},
+    {"cascade-rate-clock-while-controlled", "timing", Stage::timing,
+     "keeps the time of the last step only in steps that control the rates",
+     "a step without control of the rates", "a misplaced statement", keep_time_while_controlled},
     {"cascade-rate-dt-fixed", "timing", Stage::timing, "uses 1 ms as dt of the rate unit",
      "any rate except 1 kHz", "a fixed rate",
      [](FaultyLaw& law) {

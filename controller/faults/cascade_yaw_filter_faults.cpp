@@ -27,8 +27,9 @@ void change_yaw_tau(FaultyLaw& law, Tau tau) {
 // Whenever the integral is reset, the state of the low-pass becomes 0, too.
 void restart_yaw_filter(FaultyLaw& law) {
   auto restarts = std::make_shared<bool>(false);
-  law.rate_unit.step.resets_integral = [restarts](const cascade::RateTopics& topics) {
-    return *restarts = RateStepLaw::resets_integral(topics);
+  auto& resets = law.rate_unit.step.resets_integral;
+  resets = [restarts, then = resets](const cascade::RateTopics& topics) {
+    return *restarts = then(topics);
   };
   change_yaw_filter(law, [restarts](LowPass& filter, Scalar torque, Scalar dt_s,
                                     const RateUnitGains& gains, const CascadeTraits& traits) {

@@ -32,11 +32,23 @@ void change_correction(FaultyLaw& law, Correct correct) {
 void lock_by_stick(FaultyLaw& law) {
   auto commanded = std::make_shared<Scalar>(0.0f);
   auto& sticks = law.attitude_unit.sticks;
-  sticks.shaped_yaw_rate = [commanded](Scalar stick, const StickGains& gains) {
-    return *commanded = StickLaw::shaped_yaw_rate(stick, gains);
+  sticks.shaped_yaw_rate = [commanded, then = sticks.shaped_yaw_rate](Scalar stick,
+                                                                      const StickGains& gains) {
+    return *commanded = then(stick, gains);
   };
   sticks.locked_yaw = [commanded](Scalar yaw_sp, Scalar, Scalar heading, Scalar old, Scalar now) {
     return StickLaw::locked_yaw(yaw_sp, *commanded, heading, old, now);
+  };
+}
+
+// The stick outside the deadzone keeps its slope of 1.
+void cut_deadzone_out(FaultyLaw& law) {
+  auto& shaped = law.attitude_unit.sticks.shaped_yaw_rate;
+  shaped = [then = shaped](Scalar stick, const StickGains& gains) {
+    StickGains without_zone = gains;
+    without_zone.yaw_deadzone = 0;
+    const Scalar width = cascade::clamp(gains.yaw_deadzone, 0.0f, 0.99f);
+    return then(cascade::deadzone(stick, gains.yaw_deadzone) * (1 - width), without_zone);
   };
 }
 
@@ -64,6 +76,9 @@ const Fault yaw_lock_list[] = {
          return cascade::expo(outside, gains.yaw_expo);
        });
      }},
+    {"cascade-yaw-deadzone-not-stretched", "sticks", Stage::sticks,
+     "cuts the deadzone out and does not stretch the rest: a full stick gives less than 1",
+     "the yaw stick at half", "a missing scale", cut_deadzone_out},
     {"cascade-yaw-expo-before-deadzone", "sticks", Stage::sticks,
      "applies the expo before the deadzone", "the yaw stick at half", "steps exchanged",
      [](FaultyLaw& law) {

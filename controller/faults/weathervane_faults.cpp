@@ -40,6 +40,14 @@ const Fault weathervane_list[] = {
      [](FaultyLaw& law) {
        law.attitude.weathervane_limit = [](float yaw, const AttitudeGains&) { return yaw; };
      }},
+    {"vane-limit-converted-twice", "weathervane", Stage::weathervane,
+     "converts the limit of yaw from degrees although it is in rad/s", "weather-vaning",
+     "wrong unit",
+     [](FaultyLaw& law) {
+       limit_to(law, [](const AttitudeGains& gains) {
+         return mc_att_control::radians(gains.auto_rate_max_rad_s[2] * gains.weathervane_scale);
+       });
+     }},
     {"vane-no-reset", "weathervane", Stage::weathervane, "keeps the yaw integral",
      "weather-vaning after yaw was integrated", "a missing reset", limit_without_reset},
     {"vane-despite-pilot", "weathervane", Stage::weathervane, "weather-vanes under a pilot",
