@@ -17,6 +17,10 @@ constexpr double enough_needed = 3, least_confirmed_often = 0.15;
 // without it. At first it is larger, because other mistakes are not found yet.
 constexpr double most_farther = 0.15, most_farther_at_first = 0.5;
 
+// So many times as many vectors may be wrong as right where the suspect first acts: another mistake
+// may act at the same step.
+constexpr double most_wrong_at_first = 3;
+
 // How all suspects together agree with the port where one of them acts. Places are outputs of
 // vectors, as in Score.
 struct Confirmation {
@@ -33,13 +37,14 @@ struct Confirmation {
   // `alone`: the suspect; `all`: all suspects; `without`: all but this one.
   void add(const VectorSimilarity& vector, const Similarity& alone, const Similarity& all,
            const Similarity& without) {
+    // A fault that takes the place of another one can act where it does not act alone.
+    nearer += all.misfit < without.misfit ? 1 : 0;
+    farther += all.misfit > without.misfit ? 1 : 0;
     const OutputMask places = alone.deviating;
     if (places == 0) return;
     acting += weight(places, vector);
     confirmed += weight(places & ~all.parted, vector);
     needed += weight(~all.parted & without.parted & vector.deviating, vector);
-    nearer += all.misfit < without.misfit ? 1 : 0;
-    farther += all.misfit > without.misfit ? 1 : 0;
     right_at_first += all.parts > alone.acts ? 1 : 0;
     wrong_at_first += all.parts == alone.acts && (places & all.parted) != 0 ? 1 : 0;
   }
@@ -50,10 +55,10 @@ struct Confirmation {
     const double most = at_last ? most_farther : most_farther_at_first;
     if (needed == 0 || farther > most * (nearer + farther)) return true;
     const double least = needed < enough_needed ? least_confirmed : least_confirmed_often;
-    return at_last && (share() < least || wrong_at_first > right_at_first);
+    return at_last && (share() < least || wrong_at_first > most_wrong_at_first * right_at_first);
   }
 
-  double refutation() const { return 1 - share() + farther / std::max(1.0, nearer + farther); }
+  double refutation() const { return 1 - share() + 2 * farther / std::max(1.0, nearer + farther); }
 };
 
 }  // namespace

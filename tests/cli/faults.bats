@@ -196,3 +196,13 @@ CHECK
   [ "$status" -eq 2 ]
   has "--level events: a hunt compares values or bits"
 }
+
+# Of the faults that bound dt on one side only, one takes the place of the fault that has no bound.
+@test "a fault is named although another one that takes its place explains a vector more" {
+  cp "$SOURCE"/controller/starters/c/*.[ch] .
+  sed -i '/dt = dt < 0.002f/d' unit.c
+  cc -shared -fPIC -O2 -ffp-contract=off "-I$SOURCE/controller" ./*.c -lm -o port.so
+  run "$ATTEST" run port.so --rate 100 --profile px4-v1.5.5
+  [ "$status" -eq 1 ]
+  has "\`dt-unclamped\`: does not bound dt"
+}

@@ -239,9 +239,9 @@ TEST(Several, AFaultThatIsMostlyWrongWhereItFirstActsIsNotNamed) {
     made.acts(yaw_fault, 0, 20, 0, 4).acts(yaw_fault, 0, 20, 1, 4).has(yaw_fault);
     return made.differs(0, wrong, 1, 2);
   };
-  EXPECT_THAT(suspected(*port(10).diagnosed()), ElementsAre(yaw_fault));
-  EXPECT_THAT(suspected(*port(11).diagnosed()), IsEmpty());
-  EXPECT_THAT(suspected(*port(11).deviates_before(0, 11).diagnosed()), ElementsAre(yaw_fault))
+  EXPECT_THAT(suspected(*port(15).diagnosed()), ElementsAre(yaw_fault));
+  EXPECT_THAT(suspected(*port(16).diagnosed()), IsEmpty());
+  EXPECT_THAT(suspected(*port(16).deviates_before(0, 16).diagnosed()), ElementsAre(yaw_fault))
       << "another mistake may be the cause";
 }
 
