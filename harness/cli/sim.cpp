@@ -140,19 +140,24 @@ Result<std::vector<SimulatedFlight>> fly_all(const Sim& sim, const HostOptions& 
   return flights;
 }
 
-// The flight of a name without a profile, such as `hover`: that of the first profile, in the order
-// of known_profile_names(), that the port supports. Asks the port about every profile. Empty: the
-// name has a profile, or no profile of the port has such a flight.
+// The flight of a name without a profile, such as `hover` or `flight/hover`: that of the first
+// profile, in the order of known_profile_names(), that the port supports. Asks the port about every
+// profile. Empty: the name has a profile, or no profile of the port has such a flight.
 std::optional<Sim> flight_of_port(const SimOptions& options, const Globals& globals) {
-  const bool is_bare = options.timing.empty() && options.rate.empty() &&
-                       options.case_name.find_first_of("/.*?[") == std::string::npos;
+  constexpr std::string_view group = "flight/";
+  std::string_view name = options.case_name;
+  if (name.starts_with(group)) name.remove_prefix(group.size());
+  const bool is_bare =
+      options.timing.empty() && name.find_first_of("/.*?[") == std::string_view::npos;
+  // One rate is of the default profile; the flights of the other profiles have two.
+  const bool has_one_rate = !options.rate.empty() && options.rate.find(':') == std::string::npos;
   const auto suite = find_suite(globals.suite);
-  if (!is_bare || !suite) return std::nullopt;
+  if (!is_bare || has_one_rate || !suite) return std::nullopt;
   const auto port = describe_port(options.host, known_profile_names());
   if (!port) return std::nullopt;
   for (const std::string& profile : port->profiles) {
     SimOptions in_profile = options;
-    in_profile.case_name = fmt::format("{}/flight/{}", profile, options.case_name);
+    in_profile.case_name = fmt::format("{}/{}{}", profile, group, name);
     if (auto sim = prepare_case(in_profile, *suite)) return *std::move(sim);
   }
   return std::nullopt;

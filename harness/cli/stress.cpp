@@ -213,6 +213,11 @@ int stress_command(const StressOptions& options, const Globals& globals) {
   if (!html) return report_error(html.error());
   const auto plan = make_plan(options, *suite);
   if (!plan) return report_error(plan.error());
+  if (plan->port.profiles.empty()) {
+    const auto instead = supported_instead(options.host, {plan->tasks.front().the_case.profile},
+                                           hover_command("attest stress --case"));
+    if (instead) return report_error(*instead);
+  }
 
   note_interrupts();
   StressRun run;
@@ -237,10 +242,8 @@ int stress_command(const StressOptions& options, const Globals& globals) {
   if (run.interrupted) return exit_interrupted;
   if (all.failed()) return exit_failed;
   if (const auto missing = rates_not_judged(run); !missing.empty()) {
-    return report_error(supported_instead(options.host, {run.results.front().result.profile},
-                                          hover_command("attest stress --case"))
-                            .value_or(Error{fmt::format("not judged: {} Hz; see the reasons above",
-                                                        fmt::join(missing, " Hz, "))}));
+    return report_error(
+        {fmt::format("not judged: {} Hz; see the reasons above", fmt::join(missing, " Hz, "))});
   }
   return exit_ok;
 }

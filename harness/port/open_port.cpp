@@ -52,6 +52,9 @@ bool is_shared_library(const std::string& path) {
 Result<std::unique_ptr<Port>> refuse_unknown(const std::string& specification) {
   std::error_code unreadable;
   if (std::filesystem::is_regular_file(specification, unreadable)) {
+    if (specification.ends_with(".py")) {
+      return fail(fmt::format("{0}: is not executable; write `proc:python3 {0}`", specification));
+    }
     return fail(
         fmt::format("{}: neither a shared library nor an executable file; a port is one of "
                     "{}",
@@ -59,10 +62,12 @@ Result<std::unique_ptr<Port>> refuse_unknown(const std::string& specification) {
   }
   const std::filesystem::path path = specification;
   if (std::filesystem::is_directory(path, unreadable)) {
+    const bool is_python = std::filesystem::exists(path / "port.py", unreadable);
+    const std::string name = is_python ? "port.py" : "port.so";
     return fail(
         fmt::format("{}: is a folder, not a port; name the library or program in it, such "
                     "as {}, or start its script {}",
-                    specification, (path / "port.so").string(), (path / "check").string()));
+                    specification, (path / name).string(), (path / "check").string()));
   }
   if (path.has_extension() || path.has_parent_path()) {
     return fail(fmt::format("{}: no such file; a port is a file or one of {}", specification,

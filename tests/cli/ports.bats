@@ -235,6 +235,12 @@ TASKS
   run "$ATTEST" run ./rust.so
   [ "$status" -eq 2 ]
   has "./rust.so: is a folder, not a port"
+  echo "print()" >rust.so/port.py
+  run "$ATTEST" run ./rust.so
+  has "such as ./rust.so/port.py"
+  run "$ATTEST" run ./rust.so/port.py
+  [ "$status" -eq 2 ]
+  has "./rust.so/port.py: is not executable; write \`proc:python3 ./rust.so/port.py\`"
   mkdir mine
   run "$ATTEST" run mine
   [ "$status" -eq 2 ]
@@ -328,14 +334,18 @@ not px4-v1.5.5; write: attest run --profile px4-v1.18 --port $port"
   command=$(sed -n 's/.*; write: attest //p' <<<"$output")
   run "$ATTEST" $command --filter 'rates/p_alone@250hz'
   [ "$status" -eq 0 ]
-  run "$ATTEST" sim hover "$port"
+  for name in hover flight/hover; do
+    run "$ATTEST" sim $name "$port"
+    [ "$status" -eq 0 ]
+    has "px4-v1.18/flight/hover@250-1000hz"
+  done
+  run "$ATTEST" sim hover "$port" --rate 250:500
   [ "$status" -eq 0 ]
-  has "px4-v1.18/flight/hover@250-1000hz"
   run "$ATTEST" sim hover --rate 250 --port "$port"
   [ "$status" -eq 2 ]
   has "write: attest sim px4-v1.18/flight/hover --rate 250:1000 --port $port"
   for command in "hunt --profile v1.5.5" "time --profile v1.5.5 --rate 250" \
-    "record px4-v1.5.5/rates/p_alone --rate 250"; do
+    "record px4-v1.5.5/rates/p_alone --rate 250" stress; do
     run "$ATTEST" $command --port "$port"
     [ "$status" -eq 2 ]
     [[ $output == "attest: error: $port supports px4-v1.18, "*", not px4-v1.5.5; write: attest "* ]]
