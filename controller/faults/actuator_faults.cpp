@@ -157,7 +157,7 @@ const Fault actuators[] = {
      {},
      mc_att_control::from_v1_5_5},
     {"gear-only-armed",
-     "actuators",
+     "robustness",
      Stage::output,
      "outputs the landing gear only while armed",
      "a landing gear while disarmed",
