@@ -147,12 +147,10 @@ std::optional<Sim> flight_of_port(const SimOptions& options, const Globals& glob
   constexpr std::string_view group = "flight/";
   std::string_view name = options.case_name;
   if (name.starts_with(group)) name.remove_prefix(group.size());
-  const bool is_bare =
-      options.timing.empty() && name.find_first_of("/.*?[") == std::string_view::npos;
-  // One rate is of the default profile; the flights of the other profiles have two.
-  const bool has_one_rate = !options.rate.empty() && options.rate.find(':') == std::string::npos;
+  const bool is_bare = options.timing.empty() && options.rate.empty() &&
+                       name.find_first_of("/.*?[") == std::string_view::npos;
   const auto suite = find_suite(globals.suite);
-  if (!is_bare || has_one_rate || !suite) return std::nullopt;
+  if (!is_bare || !suite) return std::nullopt;
   const auto port = describe_port(options.host, known_profile_names());
   if (!port) return std::nullopt;
   for (const std::string& profile : port->profiles) {
