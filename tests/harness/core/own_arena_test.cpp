@@ -12,6 +12,8 @@
 #include <gtest/gtest.h>
 #include <pthread.h>
 
+#include "harness/core/sanitizers.hpp"
+
 namespace attest {
 namespace {
 
@@ -50,9 +52,7 @@ std::optional<std::size_t> private_kb() {
 
 // A command runs jobs several times: the vectors, and then their diagnosis.
 TEST(HeapCheapToFork, IsCheapAgainAfterItChanged) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "the sanitizer has a heap of its own";
-#endif
+  if (built_with_sanitizers) GTEST_SKIP() << "a sanitizer has a heap of its own";
   std::vector<std::unique_ptr<std::array<char, 1000>>> objects(20'000);
   for (auto& object : objects) object = std::make_unique<std::array<char, 1000>>();
   make_heap_cheap_to_fork();
