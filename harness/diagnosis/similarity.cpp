@@ -94,6 +94,7 @@ Similarity similarity_of(const OutputTable& outputs, const Outputs& port, const 
 Similarity cannot_run(double misfit) {
   Similarity none;
   none.parted = ~OutputMask();
+  none.parts = 0;
   none.misfit = misfit;
   return none;
 }
