@@ -2,6 +2,7 @@
 // vectors of one tick, and a port is a sum of faults and of mistakes that are no fault.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -50,6 +51,11 @@ class HandMade {
     for (std::size_t v = first; v < end; ++v) port_.at(v).at(output) += value;
     return *this;
   }
+  // While both act, `fault` acts in place of `other`, as if both replace one stage of the law.
+  HandMade& replaces(std::string_view fault, std::string_view other) {
+    replaces_[fault] = other;
+    return *this;
+  }
   // In these vectors a mistake that is no fault deviates a tick before all faults.
   HandMade& deviates_before(std::size_t first, std::size_t end) {
     for (std::size_t v = first; v < end; ++v) before_.insert(v);
@@ -90,6 +96,11 @@ class HandMade {
     for (const Hypothesis& hypothesis : hypotheses) {
       Vector sum{};
       for (const faults::Fault* fault : hypothesis) {
+        const bool is_replaced = std::ranges::any_of(hypothesis, [&](const faults::Fault* one) {
+          const auto place = replaces_.find(one->id);
+          return place != replaces_.end() && place->second == fault->id;
+        });
+        if (is_replaced) continue;
         const auto effect = effects_.find(fault->id);
         if (effect != effects_.end()) add(effect->second[v], sum);
       }
@@ -112,6 +123,7 @@ class HandMade {
   std::vector<Vector> port_;
   std::map<std::size_t, Stage> stages_;
   std::set<std::size_t> before_;
+  std::map<std::string_view, std::string_view> replaces_;
 };
 
 inline std::vector<std::string_view> ids_of(const std::vector<const faults::Fault*>& faults) {

@@ -231,6 +231,19 @@ TEST(Several, AFaultThatIsLikeAMistakeUnderFewConditionsIsNotNamed) {
   EXPECT_EQ(found->unexplained, 10u);
 }
 
+// As the bound of one side in place of no bound: it explains a vector more, and spoils all others.
+TEST(Several, AFaultThatTakesThePlaceOfABetterOneIsDropped) {
+  const auto found = HandMade(9, 0)
+                         .acts(yaw_fault, 0, 9, 0, 4)
+                         .acts(tilt_fault, 8, 9, 1, 30)
+                         .replaces(tilt_fault, yaw_fault)
+                         .has(yaw_fault)
+                         .differs(8, 9, 1, 30)
+                         .diagnosed();
+  ASSERT_TRUE(found);
+  EXPECT_THAT(suspected(*found), ElementsAre(yaw_fault));
+}
+
 // It explains an output in all vectors. But another output, in which it acts as well, has other
 // values from the first tick on.
 TEST(Several, AFaultThatIsMostlyWrongWhereItFirstActsIsNotNamed) {
