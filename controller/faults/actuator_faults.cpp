@@ -164,8 +164,8 @@ const Fault actuators[] = {
      "a helpful extra",
      [](FaultyLaw& law) {
        change_controls(law, [armed = false](Controls& control, const attest_inputs& in) mutable {
-         if ((in.updated & ATTEST_UPDATED_ACTUATOR_ARMED) != 0)
-           armed = in.actuator_armed.armed != 0;
+         const bool is_new = (in.updated & ATTEST_UPDATED_ACTUATOR_ARMED) != 0;
+         armed = is_new ? in.actuator_armed.armed != 0 : armed;
          if (!armed) control[7] = 0;
        });
      },
