@@ -18,8 +18,11 @@ namespace {
 // The vectors of a diagnosis, and the jobs that compare them.
 class Laboratory {
  public:
-  Laboratory(const HostOptions& host, const DiagnosisOptions& options, Level level)
-      : host_(host), options_(options), level_(level) {}
+  Laboratory(const HostOptions& host, const DiagnosisOptions& options, const RunResult& run)
+      : host_(host),
+        options_(options),
+        level_(run.level),
+        share_(share_of_tolerances(run.results, run.level)) {}
 
   // Runs the port on the vectors that failed; at the levels exact and events also on those that
   // passed, because their outputs need not agree with the law's at the level numeric.
@@ -42,6 +45,7 @@ class Laboratory {
   std::vector<LibraryMatches> library_;  // of each vector, at the level exact
   std::size_t failing_ = 0;
   bool is_gross_ = false;
+  double share_;  // of the tolerances
 };
 
 template <typename R>
@@ -92,7 +96,7 @@ std::vector<VectorComparison> Laboratory::compare(const std::vector<std::size_t>
   Jobs<VectorComparison> jobs;
   for (const std::size_t index : vectors) {
     jobs.push_back(
-        std::make_unique<ComparisonJob>(vectors_[index], hypotheses, observes, is_gross_));
+        std::make_unique<ComparisonJob>(vectors_[index], hypotheses, observes, is_gross_, share_));
   }
   auto results = results_of(jobs, host_.in_process);
   if (results.size() != vectors.size()) results.clear();
@@ -155,9 +159,24 @@ std::optional<Diagnosis> diagnose_grossly(Laboratory& laboratory, std::optional<
 
 }  // namespace
 
+double share_of_tolerances(const std::vector<VectorResult>& results, Level level) {
+  // In the ports of tests/ports/several, right faults are within 0.03, and near misses beyond 0.7.
+  constexpr double least = 0.1;
+  std::vector<double> deviations;  // as shares of the tolerance
+  for (const VectorResult& result : results) {
+    if (result.verdict != Verdict::pass || !result.compared) continue;
+    deviations.push_back(result.tightest ? 1 / result.tightest->ratio : 0);
+  }
+  if (deviations.empty() || level != Level::numeric) return 1;
+  const auto rounding =
+      deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() * 9 / 10);
+  std::ranges::nth_element(deviations, rounding);
+  return std::clamp(10 * *rounding, least, 1.0);
+}
+
 std::optional<Diagnosis> diagnose_run(const RunResult& run, const std::vector<SelectedCase>& cases,
                                       const HostOptions& host, const DiagnosisOptions& options) {
-  Laboratory laboratory(host, options, run.level);
+  Laboratory laboratory(host, options, run);
   auto vectors = diagnosis_vectors(cases, run.results);
   for (DiagnosisVector& vector : vectors) vector.parameters = parameters_of(run, vector);
   laboratory.run_port(vectors);

@@ -19,6 +19,12 @@ struct DiagnosisOptions {
   std::function<void(const Error&)> on_error = [](const Error&) {};
 };
 
+// The share of the tolerances within which the port must have a fault's values, from 0.1 to 1. A
+// port that has the fault, and little rounding, has them almost to the bit, so what differs by half
+// a tolerance is a near miss. The rounding shows in the results that passed: at most a tenth of
+// them may deviate by more than a tenth of the share. 1 at the levels exact and events.
+double share_of_tolerances(const std::vector<VectorResult>& results, Level level);
+
 // Empty if no vector failed with a deviation. REQUIRES: `cases` are those of the run.
 std::optional<Diagnosis> diagnose_run(const RunResult& run, const std::vector<SelectedCase>& cases,
                                       const HostOptions& host, const DiagnosisOptions& options);

@@ -228,7 +228,7 @@ Result<VectorComparison> ComparisonJob::run(std::size_t) {
   const Outputs& got = vector_.outputs ? *vector_.outputs : right;
   const FaultAnswers answers = answers_of(hypotheses_, *law, subject);
   VectorComparison found;
-  found.similarity = similarity(got, right, answers, subject.module, tolerances);
+  found.similarity = similarity(got, right, answers, subject.module, tolerances.scaled(share_));
   found.similarity.case_id = the_case.id();
   if (vector_.outputs) {
     found.similarity.stage = stage_in(*law, with_outputs(*law, got), tolerances);

@@ -96,11 +96,15 @@ struct Codec<VectorComparison> {
 
 class ComparisonJob final : public Job<VectorComparison> {
  public:
-  // `is_gross`: compares units that have events by gross_tolerances(). REQUIRES: the arguments
-  // outlive this.
+  // `is_gross`: compares units that have events by gross_tolerances(). `share`: of the tolerances,
+  // within which values are the same. REQUIRES: the arguments outlive this.
   ComparisonJob(const AnsweredVector& vector, const std::vector<Hypothesis>& hypotheses,
-                bool observes, bool is_gross = false)
-      : vector_(vector), hypotheses_(hypotheses), observes_(observes), is_gross_(is_gross) {}
+                bool observes, bool is_gross = false, double share = 1)
+      : vector_(vector),
+        hypotheses_(hypotheses),
+        observes_(observes),
+        is_gross_(is_gross),
+        share_(share) {}
 
   std::size_t size() const override { return 1; }
   Result<VectorComparison> run(std::size_t task) override;
@@ -109,6 +113,7 @@ class ComparisonJob final : public Job<VectorComparison> {
   const AnsweredVector& vector_;
   const std::vector<Hypothesis>& hypotheses_;
   bool observes_, is_gross_;
+  double share_;
 };
 
 }  // namespace attest

@@ -110,6 +110,24 @@ TEST_F(PortAnswerTest, TheTolerancesAreThoseOfTheCaseAndThePort) {
   EXPECT_EQ(compared(here("fault:tpa-missing"), {}, false, 1).similarity.deviating, 0u);
 }
 
+TEST_F(PortAnswerTest, ANearMissDiffersWithinAShareOfTheTolerances) {
+  suite_.add_unblessed("wide", std::string(tilted_and_loud) +
+                                   "[tolerance]\nwhy = \"x\"\nactuator_controls_0 = { absolute = 9 "
+                                   "}\nmc_att_ctrl_status = { absolute = 9 }\n");
+  const DiagnosisVector vector{&suite_[1], Rate::hz(250), true};
+  const auto answer = answer_to(vector, here("fault:tpa-missing"));
+  ASSERT_TRUE(answer && *answer);
+  const AnsweredVector answered{vector, std::make_shared<const Outputs>((*answer)->outputs)};
+  const std::vector<Hypothesis> hypotheses{{}, {faults::find_fault("tpa-missing")}};
+  const auto parted = [&](double share, std::size_t hypothesis) {
+    const auto found = ComparisonJob(answered, hypotheses, false, false, share).run(0).value();
+    return found.similarity.similarities[hypothesis].parted != 0;
+  };
+  EXPECT_FALSE(parted(1, 0));
+  EXPECT_TRUE(parted(1e-4, 0));
+  EXPECT_FALSE(parted(1e-4, 1));
+}
+
 TEST_F(PortAnswerTest, EachFaultIsTriedTogetherWithTheOthers) {
   const HostOptions both = here("fault:yaw-weight-dropped+tpa-missing");
   const VectorSimilarity alone = compared(both).similarity;
