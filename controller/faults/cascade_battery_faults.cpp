@@ -30,6 +30,20 @@ void scale_half(FaultyLaw& law, bool torque) {
   });
 }
 
+// Scales only in a step that takes a new sample.
+void scale_with_sample(FaultyLaw& law) {
+  auto is_new = std::make_shared<bool>(false);
+  also_before(law.rate_unit, [is_new](RateIn&) { *is_new = false; });
+  auto& step = law.rate_unit.step;
+  step.battery_scale = [is_new, then = step.battery_scale](Scalar, const Battery& sample) {
+    *is_new = true;
+    return then(0, sample);
+  };
+  step.scaled = [is_new, then = step.scaled](Scalar control, Scalar scale) {
+    return *is_new ? then(control, scale) : control;
+  };
+}
+
 const Fault battery_list[] = {
     {"cascade-battery-missing", "battery", Stage::scaling, "does not scale by the battery",
      "MC_BAT_SCALE_EN 1", "a missing step",
@@ -86,6 +100,9 @@ const Fault battery_list[] = {
          return RateStepLaw::battery_scale(0, sample);
        });
      }},
+    {"cascade-battery-with-sample-only", "battery", Stage::scaling,
+     "scales only in a step with a new battery sample", "a step without a sample",
+     "a missing latch", scale_with_sample},
     {"cascade-battery-scale-0", "battery", Stage::scaling, "uses a scale that is not positive",
      "a scale of 0 after another", "a missing condition",
      [](FaultyLaw& law) {

@@ -23,6 +23,29 @@ Vector limited_by_fmin(const Vector& rates, const QuaternionGains& gains) {
 
 bool is_usable(const Quat& q) { return std::isfinite(q.sum()); }
 
+// Drops an attitude setpoint that is not of norm 1, also one of the sticks.
+void drop_other_norms(FaultyLaw& law) {
+  auto usable = std::make_shared<bool>(true);  // the newest setpoint
+  const auto judge = [usable](const Quat& q_WD) {
+    const Scalar norm = cascade::squared_norm(q_WD);
+    *usable = norm > 0.98f && norm < 1.02f;
+  };
+  auto& unit = law.attitude_unit;
+  also_before(unit, [judge](AttitudeIn& in) {
+    if ((in.updated & ATTEST_ATTITUDE_UPDATED_VEHICLE_ATTITUDE_SETPOINT) == 0) return;
+    judge(cascade::quaternion_from<Scalar>(in.vehicle_attitude_setpoint.q_d));
+  });
+  auto& desired = unit.sticks.desired_attitude;
+  desired = [judge, then = desired](const Quat& yaw, const Quat& tilt) {
+    const Quat q_WD = then(yaw, tilt);
+    judge(q_WD);
+    return q_WD;
+  };
+  unit.step.is_newer = [usable, then = unit.step.is_newer](std::uint64_t now, std::uint64_t last) {
+    return *usable && then(now, last);
+  };
+}
+
 const Fault guard_list[] = {
     {"cascade-acos-not-guarded", "robustness", Stage::guard,
      "does not clamp the arguments of acos and asin: NaN now and then",
@@ -37,6 +60,9 @@ const Fault guard_list[] = {
          for (int i = 0; i < 4; ++i) q[i] = unit[i];
        });
      }},
+    {"cascade-setpoint-of-norm-1-only", "attitude", Stage::input,
+     "drops an attitude setpoint that is not of norm 1", "a setpoint of another norm",
+     "a helpful extra", drop_other_norms},
     {"cascade-inverse-is-conjugate", "robustness", Stage::tilt,
      "takes the conjugate of a quaternion for its inverse", "an attitude of another norm",
      "a shortcut",

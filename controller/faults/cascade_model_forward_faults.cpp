@@ -47,6 +47,25 @@ void change_model_gains(FaultyLaw& law, Change change) {
                [change](AttitudeUnitGains& gains, const P& p) { change(gains.model, p); });
 }
 
+// The law turns the command first, then the rate of the model.
+void add_command_unturned(FaultyLaw& law) {
+  auto& in_body = model_of(law).in_body;
+  in_body = [then = in_body, is_command = false](const Quat& q_WB, const Quat& q_WR,
+                                                 V rate) mutable {
+    is_command = !is_command;
+    return is_command ? rate : then(q_WB, q_WR, rate);
+  };
+}
+
+// Takes the world's z axis in the frame of the setpoint.
+void command_in_setpoint(FaultyLaw& law) {
+  auto q_WD = std::make_shared<Quat>(cascade::identity<Scalar>());
+  auto& setpoint = law.attitude_unit.attitude.setpoint;
+  setpoint = [q_WD, then = setpoint](const Quat& given) { return *q_WD = then(given); };
+  auto& world_z = model_of(law).world_z;
+  world_z = [q_WD, then = world_z](const Quat&) { return then(*q_WD); };
+}
+
 // Adds the commanded yaw rate about the world's z axis in the body, as v1.17 does. The command of
 // the model is added too, if `both`.
 template <bool both>
@@ -98,6 +117,12 @@ const Fault model_forward_list[] = {
     {"cascade-model-command-twice", "reference_model", Stage::feed_forward,
      "adds the commanded yaw rate of the model and that of v1.17", "a yaw rate", "a term twice",
      feed_yaw_rate_as_v1_17<true>},
+    {"cascade-model-command-not-turned", "reference_model", Stage::feed_forward,
+     "adds the commanded yaw rate without turning it into the body",
+     "a yaw rate and a body tilted apart from the model", "a missing step", add_command_unturned},
+    {"cascade-model-command-of-setpoint", "reference_model", Stage::feed_forward,
+     "turns the commanded yaw rate into the frame of the setpoint, not of the model",
+     "a yaw rate while the model follows a tilt", "another frame", command_in_setpoint},
     {"cascade-model-ff-missing", "reference_model", Stage::feed_forward,
      "does not feed the rate of the model forward", "MC_REF_FF and a setpoint that moves",
      "a missing term",

@@ -50,6 +50,58 @@ void change_default(FaultyLaw& law, float other) {
   });
 }
 
+// A case that sets one parameter of acro sets all, so they change only if all have their defaults.
+void use_old_acro_defaults(FaultyLaw& law) {
+  static constexpr float P::*members[] = {
+      &P::mc_acro_r_max,  &P::mc_acro_p_max,   &P::mc_acro_y_max,   &P::mc_acro_expo,
+      &P::mc_acro_expo_y, &P::mc_acro_supexpo, &P::mc_acro_supexpoy};
+  const auto table = cascade::rate_parameters();
+  const P old = default_parameters(table, cascade::Profile::px4_v1_14_4);
+  change_parameters(law.rate_unit, [old, defaults = defaults_of(law.rate_unit, table)](P& p) {
+    for (const auto member : members) {
+      if (p.*member != (*defaults).*member) return;
+    }
+    for (const auto member : members) p.*member = old.*member;
+  });
+}
+
+// Whether the rate unit was armed before the present step.
+std::shared_ptr<const bool> watch_armed(FaultyLaw& law) {
+  auto was_armed = std::make_shared<bool>(false);
+  also_before(law.rate_unit, [was_armed, armed = false](RateIn& in) mutable {
+    *was_armed = armed;
+    if ((in.updated & ATTEST_RATE_UPDATED_VEHICLE_CONTROL_MODE) != 0) {
+      armed = in.vehicle_control_mode.flag_armed != 0;
+    }
+  });
+  return was_armed;
+}
+
+// An update that arrives while armed is lost. The step that arms still takes one.
+void read_while_disarmed(FaultyLaw& law) {
+  also_before(law.rate_unit, [was_armed = watch_armed(law)](RateIn& in) {
+    if (*was_armed) in.updated &= ~std::uint32_t{ATTEST_RATE_UPDATED_PARAMETER_UPDATE};
+  });
+}
+
+// The same for the numbers that are computed from parameters. The others are used as they are.
+void compute_while_disarmed(FaultyLaw& law) {
+  auto& gains = law.rate_unit.step.gains;
+  gains = [was_armed = watch_armed(law), then = gains,
+           old = std::optional<RateUnitGains>{}](const P& p) mutable {
+    RateUnitGains next = then(p);
+    if (*was_armed && old) {
+      const Vector integral_max = next.rate.integral_max;
+      next.rate = old->rate;
+      next.rate.integral_max = integral_max;
+      next.acro.rate_max_rad_s = old->acro.rate_max_rad_s;
+      next.yaw_torque_tau_s = old->yaw_torque_tau_s;
+    }
+    old = next;
+    return next;
+  };
+}
+
 template <typename Unit>
 void read_once(Unit& unit) {
   unit.step.gains = [first = std::optional<P>{}](const P& p) mutable {
@@ -76,6 +128,12 @@ const Fault parameter_list[] = {
     {"cascade-rate-param-once", "parameters", Stage::parameters,
      "reads the parameters of the rate unit once", "a parameter that changes in flight", "a latch",
      [](FaultyLaw& law) { read_once(law.rate_unit); }},
+    {"cascade-rate-param-disarmed-only", "parameters", Stage::parameters,
+     "reads changed parameters of the rate unit only while disarmed",
+     "a parameter that changes in flight", "a missing update", read_while_disarmed},
+    {"cascade-rate-gains-disarmed-only", "parameters", Stage::parameters,
+     "takes changed gains of the rate unit only while disarmed", "a gain that changes in flight",
+     "a missing update", compute_while_disarmed},
     {"cascade-attitude-param-late", "parameters", Stage::parameters,
      "uses the parameters of the previous update in the attitude unit",
      "a parameter that changes in flight", "one-tick delay",
@@ -205,6 +263,15 @@ const Fault parameter_list[] = {
      [](FaultyLaw& law) { change_default<&P::mc_pitch_p>(law, 6.5f); },
      {},
      from_v1_17},
+    {"cascade-acro-defaults-of-v1.14.4",
+     "acro",
+     Stage::parameters,
+     "has the defaults of v1.14.4 for the parameters of acro",
+     "any stick",
+     old_default,
+     use_old_acro_defaults,
+     {},
+     from_v1_15_4},
     {"cascade-yaw-deadzone-not-read",
      "sticks",
      Stage::parameters,

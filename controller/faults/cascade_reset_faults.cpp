@@ -103,6 +103,13 @@ const Fault reset_list[] = {
          return cascade::unit(product(cascade::inverse(delta), q_WD));
        });
      }},
+    {"cascade-reset-quat-order", "estimator_reset", Stage::estimator_reset,
+     "takes delta_q_reset as x, y, z, w", "a reset", "quaternion order",
+     [](FaultyLaw& law) {
+       change_reset(law, [](AttitudeTopic& topic) {
+         std::rotate(topic.delta_q_reset, topic.delta_q_reset + 3, topic.delta_q_reset + 4);
+       });
+     }},
     {"cascade-reset-replaces", "estimator_reset", Stage::estimator_reset,
      "takes delta_q_reset as the new setpoint", "a reset", "another meaning",
      [](FaultyLaw& law) {

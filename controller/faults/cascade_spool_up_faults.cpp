@@ -63,6 +63,22 @@ void move_limits_before_use(FaultyLaw& law) {
   };
 }
 
+// The lowest thrust starts at MPC_MANTHR_MIN, not at 0.
+void start_at_lowest_thrust(FaultyLaw& law) {
+  auto is_first = std::make_shared<bool>(true);
+  auto& unit = law.attitude_unit;
+  unit.sticks.throttle = [is_first, then = unit.sticks.throttle](
+                             Scalar stick, const StickGains& gains, ThrustLimits limits) {
+    if (*is_first) limits.min = gains.thrust_min;
+    return then(stick, gains, limits);
+  };
+  unit.step.thrust_min = [is_first, then = unit.step.thrust_min](
+                             Scalar before, Scalar dt_s, bool landed, const StickGains& gains) {
+    const Scalar from = std::exchange(*is_first, false) ? gains.thrust_min : before;
+    return then(from, dt_s, landed, gains);
+  };
+}
+
 const Fault spool_up_list[] = {
     {"cascade-spool-up-missing", "spool_up", Stage::throttle, "has no spool-up",
      "throttle directly after arming", "a missing step",
@@ -170,6 +186,19 @@ const Fault spool_up_list[] = {
          return landed ? 0.0f : gains.thrust_min;
        });
      }},
+    {"cascade-min-thrust-fast", "spool_up", Stage::throttle,
+     "moves the lowest thrust by 0.5 in each second, not by 0.05", "takeoff at throttle -1",
+     "a wrong factor",
+     [](FaultyLaw& law) {
+       auto& thrust_min = law.attitude_unit.step.thrust_min;
+       thrust_min = [then = thrust_min](Scalar before, Scalar dt_s, bool landed,
+                                        const StickGains& gains) {
+         return then(before, dt_s * 10, landed, gains);
+       };
+     }},
+    {"cascade-min-thrust-from-parameter", "spool_up", Stage::throttle,
+     "starts the lowest thrust at MPC_MANTHR_MIN, not at 0", "throttle -1 at the start",
+     "initial state", start_at_lowest_thrust},
     {"cascade-min-thrust-missing", "spool_up", Stage::throttle, "has no minimum thrust in flight",
      "throttle -1 in flight", "a missing term",
      [](FaultyLaw& law) {

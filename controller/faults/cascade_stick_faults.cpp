@@ -55,6 +55,62 @@ void change_lowest_throttle(FaultyLaw& law, Test test) {
   law.attitude_unit.sticks.is_lowest_throttle = test;
 }
 
+// The setpoint turns with the yaw stick, but commands no yaw rate.
+void command_no_yaw_rate(FaultyLaw& law) {
+  struct Seen {
+    cascade::LowPass<Scalar> filter;
+    Scalar dt_s = 0, rate = 0;
+  };
+  auto seen = std::make_shared<Seen>();
+  auto& step_time = law.attitude_unit.step.step_time;
+  step_time = [seen, then = step_time](std::uint64_t now_us, std::uint64_t last_us) {
+    return seen->dt_s = then(now_us, last_us);
+  };
+  auto& sticks = law.attitude_unit.sticks;
+  sticks.straight_yaw_rate = [seen, then = sticks.straight_yaw_rate](Scalar stick,
+                                                                     const StickGains& gains) {
+    seen->rate = then(stick, gains);
+    return 0.0f;
+  };
+  sticks.integrated_yaw = [seen, then = sticks.integrated_yaw](Scalar yaw, Scalar, Scalar dt_s) {
+    return then(yaw, seen->rate, dt_s);
+  };
+  sticks.shaped_yaw_rate = [seen, then = sticks.shaped_yaw_rate](Scalar stick,
+                                                                 const StickGains& gains) {
+    const CascadeTraits traits{};
+    seen->rate = seen->filter.update(gains.yaw_tau_s, seen->dt_s, then(stick, gains), traits);
+    return 0.0f;
+  };
+  sticks.locked_yaw = [seen, then = sticks.locked_yaw](Scalar yaw, Scalar, Scalar heading,
+                                                       Scalar old, Scalar correction) {
+    return then(yaw, seen->rate, heading, old, correction);
+  };
+}
+
+// The yaw stick counts as centred while the vehicle has landed.
+void centre_yaw_stick_while_landed(FaultyLaw& law) {
+  auto landed = std::make_shared<bool>(true);
+  auto& runs = law.attitude_unit.step.runs;
+  runs = [landed, then = runs](const cascade::AttitudeTopics& topics) {
+    *landed = topics.landed;
+    return then(topics);
+  };
+  auto& sticks = law.attitude_unit.sticks;
+  for (auto* rate : {&sticks.straight_yaw_rate, &sticks.shaped_yaw_rate}) {
+    *rate = [landed, then = *rate](Scalar stick, const StickGains& gains) {
+      return *landed ? 0.0f : then(stick, gains);
+    };
+  }
+}
+
+// cascade::heading() with the arguments of atan2 exchanged.
+Scalar heading_from_east(const Quat& q, const CascadeTraits& law) {
+  if (cascade::pole_at(2 * (q[1] * q[3] - q[0] * q[2])) != 0) return cascade::heading(q, law);
+  const Scalar R00 = law.squares_heading ? q[0] * q[0] + q[1] * q[1] - q[2] * q[2] - q[3] * q[3]
+                                         : 1 - 2 * (q[2] * q[2] + q[3] * q[3]);
+  return elementary::atan2(R00, 2 * (q[1] * q[2] + q[0] * q[3]));
+}
+
 const Fault stick_list[] = {
     {"cascade-sticks-exchanged", "sticks", Stage::sticks, "exchanges roll and pitch stick",
      "one of the sticks", "wrong axis",
@@ -172,6 +228,14 @@ const Fault stick_list[] = {
          out.vehicle_attitude_setpoint.yaw_sp_move_rate = 0;
        });
      }},
+    {"cascade-yaw-stick-turns-only", "sticks", Stage::sticks,
+     "turns the setpoint with the yaw stick, but commands a yaw rate of 0", "the yaw stick",
+     "a missing term", command_no_yaw_rate},
+    {"cascade-yaw-stick-off-landed", "modes", Stage::sticks, "ignores the yaw stick while landed",
+     "the yaw stick on the ground", "a helpful extra", centre_yaw_stick_while_landed},
+    {"cascade-heading-atan2-exchanged", "sticks", Stage::sticks,
+     "exchanges the arguments of atan2 in the heading", "any heading", "arguments exchanged",
+     [](FaultyLaw& law) { law.attitude_unit.sticks.heading = heading_from_east; }},
     {"cascade-idle-yaw-ignored", "sticks", Stage::sticks,
      "holds the yaw also at the lowest throttle", "throttle -1 and a heading that drifts",
      "a missing case",
@@ -230,6 +294,19 @@ const Fault stick_list[] = {
          const Quat lean = cascade::shortest_rotation(up, cascade::z_axis(q_WB));
          const Quat yaw = product(cascade::inverse(lean), q_WB);
          const Quat turned = product(product(cascade::inverse(yaw), desired), tilt);
+         return cascade::shortest_rotation(up, cascade::z_axis(turned));
+       };
+     }},
+    {"cascade-vtol-yaw-in-world", "sticks", Stage::sticks,
+     "takes the yaw of a VTOL from the product in the other order",
+     "a VTOL with a yaw error and a tilt", "factors exchanged",
+     [](FaultyLaw& law) {
+       law.attitude_unit.sticks.tilt_for_yaw_error = [](const Quat& tilt, const Quat& desired,
+                                                        const Quat& q_WB) {
+         const Vector up(0, 0, 1);
+         const Quat lean = cascade::shortest_rotation(up, cascade::z_axis(q_WB));
+         const Quat yaw = product(q_WB, cascade::inverse(lean));
+         const Quat turned = product(product(cascade::inverse(desired), yaw), tilt);
          return cascade::shortest_rotation(up, cascade::z_axis(turned));
        };
      }},

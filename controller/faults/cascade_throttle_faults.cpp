@@ -66,6 +66,22 @@ const Fault throttle_list[] = {
        change_throttle_gains(
            law, [](StickGains& gains, const CascadeParameters&) { gains.thrust_min = 0; });
      }},
+    {"cascade-straight-throttle-from-0", "sticks", Stage::throttle,
+     "starts the straight curve at 0, not at MPC_MANTHR_MIN", "MPC_THR_CURVE 1 in flight",
+     "a missing parameter",
+     [](FaultyLaw& law) {
+       auto& sticks = law.attitude_unit.sticks;
+       sticks.throttle = [then = sticks.throttle](Scalar stick, const StickGains& gains,
+                                                  ThrustLimits limits) {
+         if (gains.throttle_curve == Curve::straight) limits.min = 0;
+         return then(stick, gains, limits);
+       };
+       sticks.uncentred_throttle = [then = sticks.uncentred_throttle](Scalar stick,
+                                                                      StickGains gains) {
+         if (gains.throttle_curve == Curve::straight) gains.thrust_min = 0;
+         return then(stick, gains);
+       };
+     }},
     {"cascade-hover-at-half", "sticks", Stage::throttle, "does not read MPC_THR_HOVER",
      "MPC_THR_HOVER 0.4 at throttle 0", "a missing parameter",
      [](FaultyLaw& law) {

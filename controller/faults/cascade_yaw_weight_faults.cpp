@@ -116,10 +116,11 @@ const Fault yaw_weight_list[] = {
        });
      }},
     {"cascade-yaw-weight-inverted", "yaw_weight", Stage::blend,
-     "corrects the share 1 - MC_YAW_WEIGHT", "any yaw error", "a complement",
+     "takes MC_YAW_WEIGHT for the share that is not corrected", "any yaw error", "a complement",
      [](FaultyLaw& law) {
-       change_yaw_angle(
-           law, [](Scalar, Scalar z, Scalar weight) { return (1 - weight) * elementary::asin(z); });
+       change_parameters(law.attitude_unit, [](CascadeParameters& p) {
+         p.mc_yaw_weight = 1 - cascade::clamp(p.mc_yaw_weight, 0.0f, 1.0f);
+       });
      }},
     {"cascade-not-reduced", "yaw_weight", Stage::blend,
      "corrects the whole error in one rotation, without priority of the tilt", "a yaw error",

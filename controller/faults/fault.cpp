@@ -123,7 +123,9 @@ std::vector<Subject> subjects() {
           {in_cascade::timing_faults(), cascades},
           {in_cascade::axis_faults(), cascades},
           {in_cascade::signal_faults(), cascades},
-          {in_cascade::step_faults(), cascades}};
+          {in_cascade::step_faults(), cascades},
+          {in_cascade::formula_faults(), cascades},
+          {in_cascade::filter_faults(), cascades}};
 }
 
 std::vector<Fault> all_faults() {

@@ -58,6 +58,8 @@ std::span<const Fault> timing_faults();
 std::span<const Fault> axis_faults();
 std::span<const Fault> signal_faults();
 std::span<const Fault> step_faults();
+std::span<const Fault> formula_faults();
+std::span<const Fault> filter_faults();
 }  // namespace in_cascade
 
 }  // namespace attest::faults

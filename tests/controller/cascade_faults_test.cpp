@@ -253,6 +253,10 @@ TEST(FaultyUnits, TwoFaultsOfOneStageActTogether) {
   const Fault* const landed[] = {find_fault("cascade-landed-ignored"),
                                  find_fault("cascade-maybe-landed-ignored")};
   EXPECT_TRUE(law_with(landed).rate_unit.rate.may_integrate(true, true));
+  const Fault* const yaw[] = {find_fault("cascade-yaw-weight-by-lerp"),
+                              find_fault("cascade-yaw-angle-halved")};
+  EXPECT_EQ(law_with(yaw).attitude_unit.attitude.weighted_yaw(0.5f, 0.8f, 0.5f),
+            Quat(0.875f, 0, 0, 0.2f));
 }
 
 TEST(FaultyUnits, TwoFaultsActTogether) {
