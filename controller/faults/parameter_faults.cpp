@@ -13,10 +13,10 @@ using P = Parameters;
 // Computes the gains from changed parameters.
 template <typename Change>
 void change_parameters(FaultyLaw& law, Change change) {
-  law.step.gains = [change](const Parameters& parameters) {
+  law.step.gains = [change, then = law.step.gains](const Parameters& parameters) {
     Parameters changed = parameters;
     change(changed);
-    return StepStages::Law::gains(changed);
+    return then(changed);
   };
 }
 
@@ -40,8 +40,8 @@ void never_read(FaultyLaw& law) {
 
 template <typename Change>
 void change_gains(FaultyLaw& law, Change change) {
-  law.step.gains = [change](const Parameters& parameters) {
-    Gains gains = StepStages::Law::gains(parameters);
+  law.step.gains = [change, then = law.step.gains](const Parameters& parameters) {
+    Gains gains = then(parameters);
     change(gains, parameters);
     return gains;
   };
@@ -88,6 +88,26 @@ const Fault parameter_list[] = {
      "time constants that differ", "wrong axis",
      [](FaultyLaw& law) {
        change_parameters(law, [](Parameters& p) { std::swap(p.mc_roll_tc, p.mc_pitch_tc); });
+     }},
+    {"tc-of-roll-for-pitch", "parameters", Stage::parameters,
+     "reads MC_ROLL_TC instead of MC_PITCH_TC", "time constants that differ", wrong_name,
+     read_from<&P::mc_pitch_tc, &P::mc_roll_tc>},
+    {"i-in-ideal-form", "rates", Stage::parameters, "multiplies the integral gain by the P gain",
+     "an error that lasts", "a misplaced factor",
+     [](FaultyLaw& law) {
+       change_gains(law, [](Gains& gains, const Parameters& p) {
+         gains.rate.integral[0] *= p.mc_rollrate_p;
+         gains.rate.integral[1] *= p.mc_pitchrate_p;
+         gains.rate.integral[2] *= p.mc_yawrate_p;
+       });
+     }},
+    {"yawrate-max-in-degrees", "rate_limit", Stage::limit,
+     "leaves the limits of the yaw rate in degrees", "a yaw rate beyond the limit", "degrees",
+     [](FaultyLaw& law) {
+       change_gains(law, [](Gains& gains, const Parameters& p) {
+         gains.attitude.rate_max_rad_s[2] = p.mc_yawrate_max;
+         gains.attitude.auto_rate_max_rad_s[2] = p.mc_yawrauto_max;
+       });
      }},
     {"tc-on-i", "parameters", Stage::parameters, "scales the integral gain too",
      "a time constant other than 0.2", "a misplaced factor",

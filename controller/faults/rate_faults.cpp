@@ -19,6 +19,48 @@ void change_controls(FaultyLaw& law, Change change) {
 
 using V = const Vector&;
 
+// Each step integrates the mean of its error and of that of the step before.
+void integrate_trapezoids(FaultyLaw& law) {
+  struct Errors {
+    Vector now = Vector::Zero(), last = Vector::Zero();
+  };
+  auto errors = std::make_shared<Errors>();
+  auto& stages = law.rate;
+  stages.proportional = [errors, then = stages.proportional](V error, float attenuation,
+                                                             const RateGains& gains) {
+    errors->last = std::exchange(errors->now, error);
+    return then(error, attenuation, gains);
+  };
+  stages.growth = [errors, then = stages.growth](V error, float dt_s, const RateGains& gains) {
+    return then(0.5f * (error + errors->last), dt_s, gains);
+  };
+}
+
+void feed_measured_rates_forward(FaultyLaw& law) {
+  auto measured = std::make_shared<Vector>(Vector::Zero());
+  auto& stages = law.rate;
+  stages.derivative = [measured, then = stages.derivative](V prev, V rates, float dt_s,
+                                                           const RateGains& gains) {
+    *measured = rates;
+    return then(prev, rates, dt_s, gains);
+  };
+  stages.feed_forward = [measured, then = stages.feed_forward](V, const RateGains& gains) {
+    return then(*measured, gains);
+  };
+}
+
+void take_dt_as_ms(FaultyLaw& law) {
+  auto& stages = law.rate;
+  stages.growth = [then = stages.growth](V error, float dt_s, const RateGains& gains) {
+    return then(error, dt_s * 0.001f, gains);
+  };
+  for (auto* change : {&stages.derivative, &stages.feed_forward_change}) {
+    *change = [then = *change](V one, V other, float dt_s, const RateGains& gains) {
+      return then(one, other, dt_s * 0.001f, gains);
+    };
+  }
+}
+
 const Fault rate_list[] = {
     {"p-missing", "rates", Stage::p, "has no P term", "a rate error", "a missing term",
      [](FaultyLaw& law) { change_terms(law, [](ControlTerms& t) { t.p.setZero(); }); }},
@@ -56,6 +98,20 @@ const Fault rate_list[] = {
          return std::exchange(last, rates_sp);
        };
      }},
+    {"rate-dt-as-ms", "rates", Stage::timing,
+     "takes dt of the rate loop for milliseconds, and divides it by 1000", "rates that change",
+     "a wrong unit", take_dt_as_ms},
+    {"i-by-trapezoids", "rates", Stage::i, "integrates with the trapezoidal rule",
+     "an error that changes", "another integration", integrate_trapezoids},
+    {"ff-of-rates",
+     "rates",
+     Stage::ff,
+     "feeds the measured rates forward",
+     "a feed-forward gain and a rate error",
+     "another signal",
+     feed_measured_rates_forward,
+     {},
+     mc_att_control::from_v1_5_5},
     {"i-never", "rates", Stage::i, "has no integral: it stays 0", "an error that lasts",
      "a missing term",
      [](FaultyLaw& law) {

@@ -98,6 +98,12 @@ TEST(FaultyController, TwoFaultsOfOneStageActTogether) {
   const Fault* const signs[] = {find_fault("i-subtracted"), find_fault("d-missing")};
   const Vector one = Vector::Ones(), two = 2 * one, three = 3 * one, four = 4 * one;
   EXPECT_EQ(law_with(signs).rate.control(one, two, three, four), Vector(one - three + four));
+
+  const Fault* const gains[] = {find_fault("pitch-p-of-roll"), find_fault("yaw-p-of-roll")};
+  Parameters parameters = mc_att_control::default_parameters();
+  parameters.mc_roll_p = 3.0f;
+  const AttitudeGains attitude = law_with(gains).step.gains(parameters).attitude;
+  EXPECT_EQ(attitude.proportional_1_s, Vector::Constant(3.0f));
 }
 
 TEST(FaultyController, TwoFaultsActTogether) {
