@@ -22,10 +22,11 @@ void change_controls(FaultyLaw& law, Change change) {
 template <typename Apply>
 void scale_otherwise(FaultyLaw& law, Apply apply) {
   auto factor = std::make_shared<float>(1.0f);
-  law.step.battery_factor = [factor](const Topics& topics, const Gains& gains, Profile profile) {
-    *factor = StepStages::Law::battery_factor(topics, gains, profile);
+  change_stage(law.step.battery_factor, [factor](const auto& then, const Topics& topics,
+                                                 const Gains& gains, Profile profile) {
+    *factor = then(topics, gains, profile);
     return 1.0f;
-  };
+  });
   change_controls(
       law, [factor, apply](Controls& control, const attest_inputs&) { apply(control, *factor); });
 }
@@ -121,26 +122,26 @@ const Fault battery[] = {
      "gives the scaled controls to the integrator", "a scaled control near a gate", "scaling order",
      [](FaultyLaw& law) {
        auto factor = std::make_shared<float>(1.0f);
-       law.step.battery_factor = [factor](const Topics& topics, const Gains& gains,
-                                          Profile profile) {
-         return *factor = StepStages::Law::battery_factor(topics, gains, profile);
-       };
-       law.rate.integrate_axis = [factor](float integral, float control, float thrust, float growth,
-                                          bool frozen) {
-         return RateStages::Law::integrate_axis(integral, control * *factor, thrust, growth,
-                                                frozen);
-       };
+       change_stage(law.step.battery_factor,
+                    [factor](const auto& then, const Topics& topics, const Gains& gains,
+                             Profile profile) { return *factor = then(topics, gains, profile); });
+       change_stage(law.rate.integrate_axis,
+                    [factor](const auto& then, float integral, float control, float thrust,
+                             float growth, bool frozen) {
+                      return then(integral, control * *factor, thrust, growth, frozen);
+                    });
      }},
     {"battery-first-scale", "battery", Stage::scaling, "keeps the first scale that it receives",
      "a scale that changes", "a latch",
      [](FaultyLaw& law) {
-       law.step.battery_factor = [kept = 0.0f](const Topics& topics, const Gains& gains,
-                                               Profile profile) mutable {
-         if (kept == 0 && topics.battery_scale > 0) kept = topics.battery_scale;
-         Topics then = topics;
-         then.battery_scale = kept;
-         return StepStages::Law::battery_factor(then, gains, profile);
-       };
+       change_stage(law.step.battery_factor,
+                    [kept = 0.0f](const auto& then, const Topics& topics, const Gains& gains,
+                                  Profile profile) mutable {
+                      if (kept == 0 && topics.battery_scale > 0) kept = topics.battery_scale;
+                      Topics held = topics;
+                      held.battery_scale = kept;
+                      return then(held, gains, profile);
+                    });
      }},
 };
 
@@ -206,20 +207,20 @@ const Fault actuators[] = {
     {"breaker-ignored", "actuators", Stage::output, "has no circuit breaker", "CBRK_RATE_CTRL",
      "a missing step",
      [](FaultyLaw& law) {
-       law.step.gains = [](const Parameters& parameters) {
-         Gains gains = StepStages::Law::gains(parameters);
+       change_stage(law.step.gains, [](const auto& then, const Parameters& parameters) {
+         Gains gains = then(parameters);
          gains.actuators_cut = false;
          return gains;
-       };
+       });
      }},
     {"breaker-by-any-value", "actuators", Stage::output, "opens the breaker at any value except 0",
      "CBRK_RATE_CTRL of another value", "flag comparison",
      [](FaultyLaw& law) {
-       law.step.gains = [](const Parameters& parameters) {
-         Gains gains = StepStages::Law::gains(parameters);
+       change_stage(law.step.gains, [](const auto& then, const Parameters& parameters) {
+         Gains gains = then(parameters);
          gains.actuators_cut = parameters.cbrk_rate_ctrl != 0;
          return gains;
-       };
+       });
      }},
     {"breaker-stops-status", "actuators", Stage::output,
      "publishes no integrals where it publishes no actuators", "CBRK_RATE_CTRL",

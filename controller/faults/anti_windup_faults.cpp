@@ -39,11 +39,11 @@ void use_gates(FaultyLaw& law, const Gates& gates) {
 // Changes what the first gate sees. Change is void(float& thrust, MotorLimits&).
 template <typename Change>
 void change_gate(FaultyLaw& law, Change change) {
-  law.rate.may_integrate = [change, then = law.rate.may_integrate](float thrust,
-                                                                   MotorLimits limits) {
-    change(thrust, limits);
-    return then(thrust, limits);
-  };
+  change_stage(law.rate.may_integrate,
+               [change](const auto& then, float thrust, MotorLimits limits) {
+                 change(thrust, limits);
+                 return then(thrust, limits);
+               });
 }
 
 // The first gate is open at a thrust at which `open` is true.
@@ -62,15 +62,14 @@ void change_flags(FaultyLaw& law, Change change) {
 
 void reset_below_takeoff(FaultyLaw& law) {
   auto below = std::make_shared<bool>(false);
-  law.rate.may_integrate = [below](float thrust, MotorLimits limits) {
+  change_stage(law.rate.may_integrate, [below](const auto& then, float thrust, MotorLimits limits) {
     *below = !(thrust > takeoff_thrust);
-    return *below || RateStages::Law::may_integrate(thrust, limits);
-  };
-  law.rate.integrate_axis = [below](float integral, float control, float thrust, float growth,
-                                    bool frozen) {
-    return *below ? 0.0f
-                  : RateStages::Law::integrate_axis(integral, control, thrust, growth, frozen);
-  };
+    return *below || then(thrust, limits);
+  });
+  change_stage(law.rate.integrate_axis, [below](const auto& then, float integral, float control,
+                                                float thrust, float growth, bool frozen) {
+    return *below ? 0.0f : then(integral, control, thrust, growth, frozen);
+  });
 }
 
 const Fault anti_windup_list[] = {
@@ -125,15 +124,17 @@ const Fault anti_windup_list[] = {
      "the yaw limit", "wrong axis",
      [](FaultyLaw& law) {
        auto state = std::make_shared<std::pair<int, bool>>(0, false);  // axis, yaw flag
-       law.rate.may_integrate = [state](float thrust, const MotorLimits& limits) {
-         *state = {0, limits.yaw};
-         return RateStages::Law::may_integrate(thrust, limits);
-       };
-       law.rate.integrate_axis = [state](float integral, float control, float thrust, float growth,
-                                         bool) {
-         const bool frozen = state->first++ == 0 && state->second;
-         return RateStages::Law::integrate_axis(integral, control, thrust, growth, frozen);
-       };
+       change_stage(law.rate.may_integrate,
+                    [state](const auto& then, float thrust, const MotorLimits& limits) {
+                      *state = {0, limits.yaw};
+                      return then(thrust, limits);
+                    });
+       change_stage(law.rate.integrate_axis,
+                    [state](const auto& then, float integral, float control, float thrust,
+                            float growth, bool) {
+                      const bool frozen = state->first++ == 0 && state->second;
+                      return then(integral, control, thrust, growth, frozen);
+                    });
      }},
     {"gate-thrust-dropped", "anti_windup", Stage::gate, "integrates where control exceeds thrust",
      "a control above the thrust", "a condition dropped",
@@ -155,17 +156,17 @@ const Fault anti_windup_list[] = {
      "wrong axis",
      [](FaultyLaw& law) {
        auto largest = std::make_shared<float>(0.0f);
-       law.rate.control = [largest](const Vector& p, const Vector& d, const Vector& i,
-                                    const Vector& ff) {
-         const Vector control = RateStages::Law::control(p, d, i, ff);
+       change_stage(law.rate.control, [largest](const auto& then, const Vector& p, const Vector& d,
+                                                const Vector& i, const Vector& ff) {
+         const Vector control = then(p, d, i, ff);
          *largest = control.cwiseAbs().maxCoeff();
          return control;
-       };
-       law.rate.integrate_axis = [largest](float integral, float control, float thrust,
-                                           float growth, bool frozen) {
-         return RateStages::Law::integrate_axis(integral, control, thrust, growth,
-                                                frozen || !(*largest < thrust));
-       };
+       });
+       change_stage(
+           law.rate.integrate_axis, [largest](const auto& then, float integral, float control,
+                                              float thrust, float growth, bool frozen) {
+             return then(integral, control, thrust, growth, frozen || !(*largest < thrust));
+           });
      }},
     {"gate-integral-dropped", "anti_windup", Stage::gate, "does not bound the integral",
      "an integral of 0.3", "missing clamp",
@@ -221,12 +222,12 @@ const Fault anti_windup_list[] = {
          *limited = limits.lower || limits.upper;
          return thrust > takeoff_thrust;
        };
-       law.rate.integrate_axis = [limited](float integral, float control, float thrust,
-                                           float growth, bool frozen) {
-         const bool grows = std::abs(integral + growth) >= std::abs(integral);
-         return RateStages::Law::integrate_axis(integral, control, thrust, growth,
-                                                frozen || (*limited && grows));
-       };
+       change_stage(law.rate.integrate_axis,
+                    [limited](const auto& then, float integral, float control, float thrust,
+                              float growth, bool frozen) {
+                      const bool grows = std::abs(integral + growth) >= std::abs(integral);
+                      return then(integral, control, thrust, growth, frozen || (*limited && grows));
+                    });
      }},
     {"gate-finite-dropped", "anti_windup", Stage::gate, "does not check whether the sum is finite",
      "a NaN", "NaN handling", [](FaultyLaw& law) { use_gates(law, {}); },
@@ -284,12 +285,11 @@ const Fault anti_windup_list[] = {
     {"frozen-is-zero", "anti_windup", Stage::gate, "returns 0 where the integral is frozen",
      "a gate that closes after some integration", "a wrong return",
      [](FaultyLaw& law) {
-       law.rate.integrate_axis = [](float integral, float control, float thrust, float growth,
-                                    bool frozen) {
-         const float next =
-             RateStages::Law::integrate_axis(integral, control, thrust, growth, frozen);
+       change_stage(law.rate.integrate_axis, [](const auto& then, float integral, float control,
+                                                float thrust, float growth, bool frozen) {
+         const float next = then(integral, control, thrust, growth, frozen);
          return next == integral && growth != 0 ? 0.0f : next;
-       };
+       });
      }},
     {"zero-is-not-finite", "anti_windup", Stage::gate,
      "tests `if (x && ...)` instead of isfinite(x)", "an integral that becomes exactly 0",
@@ -302,10 +302,10 @@ const Fault anti_windup_list[] = {
     {"integral-decays", "anti_windup", Stage::i, "leaks the integral", "an error that lasts",
      "a helpful extra",
      [](FaultyLaw& law) {
-       law.rate.integrate_axis = [](float integral, float control, float thrust, float growth,
-                                    bool frozen) {
-         return RateStages::Law::integrate_axis(integral * 0.999f, control, thrust, growth, frozen);
-       };
+       change_stage(law.rate.integrate_axis, [](const auto& then, float integral, float control,
+                                                float thrust, float growth, bool frozen) {
+         return then(integral * 0.999f, control, thrust, growth, frozen);
+       });
      }},
 };
 

@@ -28,32 +28,33 @@ const Fault arming_list[] = {
     {"reset-on-arming", "arming", Stage::arming, "resets at arming, not while disarmed", "disarmed",
      "a missing reset",
      [](FaultyLaw& law) {
-       law.step.is_flying = [was = false](const Topics& topics) mutable {
-         const bool is = StepStages::Law::is_flying(topics);
-         return std::exchange(was, is) || !is;
-       };
+       change_stage(law.step.is_flying,
+                    [was = false](const auto& then, const Topics& topics) mutable {
+                      const bool is = then(topics);
+                      return std::exchange(was, is) || !is;
+                    });
      }},
     {"reset-after-update", "arming", Stage::arming, "does not update the integrals while disarmed",
      "disarmed with thrust", "order of stages",
      [](FaultyLaw& law) {
        auto flying = std::make_shared<bool>(true);
-       law.step.is_flying = [flying](const Topics& topics) {
-         return *flying = StepStages::Law::is_flying(topics);
-       };
-       law.rate.integrate_axis = [flying](float integral, float control, float thrust, float growth,
-                                          bool frozen) {
-         return *flying ? RateStages::Law::integrate_axis(integral, control, thrust, growth, frozen)
-                        : 0.0f;
-       };
+       change_stage(law.step.is_flying, [flying](const auto& then, const Topics& topics) {
+         return *flying = then(topics);
+       });
+       change_stage(law.rate.integrate_axis,
+                    [flying](const auto& then, float integral, float control, float thrust,
+                             float growth, bool frozen) {
+                      return *flying ? then(integral, control, thrust, growth, frozen) : 0.0f;
+                    });
      }},
     {"disarmed-zero", "arming", Stage::output, "publishes zeros while disarmed",
      "disarmed with an error", "a helpful extra",
      [](FaultyLaw& law) {
        auto flying = std::make_shared<bool>(true);
-       law.step.is_flying = [flying](const Topics& topics) {
+       change_stage(law.step.is_flying, [flying](const auto& then, const Topics& topics) {
          *flying = topics.armed;
-         return StepStages::Law::is_flying(topics);
-       };
+         return then(topics);
+       });
        also_after(law, [flying](const attest_inputs&, attest_outputs& out) {
          if (*flying || out.actuator_controls_0.published == 0) return;
          for (float& c : out.actuator_controls_0.control) c = 0;
@@ -63,10 +64,10 @@ const Fault arming_list[] = {
      "disarmed", "a helpful extra",
      [](FaultyLaw& law) {
        auto armed = std::make_shared<bool>(true);
-       law.step.is_flying = [armed](const Topics& topics) {
+       change_stage(law.step.is_flying, [armed](const auto& then, const Topics& topics) {
          *armed = topics.armed;
-         return StepStages::Law::is_flying(topics);
-       };
+         return then(topics);
+       });
        also_after(law, [armed](const attest_inputs&, attest_outputs& out) {
          if (!*armed) out.actuator_controls_0.published = 0;
        });
@@ -104,9 +105,9 @@ const Fault arming_list[] = {
        also_before(law, [received](attest_inputs& in) {
          *received = *received || (in.updated & ATTEST_UPDATED_VEHICLE_STATUS) != 0;
        });
-       law.step.is_flying = [received](const Topics& topics) {
-         return StepStages::Law::is_flying(topics) && *received;
-       };
+       change_stage(law.step.is_flying, [received](const auto& then, const Topics& topics) {
+         return then(topics) && *received;
+       });
      }},
     {"status-not-needed", "arming", Stage::output, "publishes before the first vehicle_status",
      "no vehicle_status yet", "initial state",
@@ -154,12 +155,13 @@ const Fault arming_list[] = {
        static std::weak_ptr<Vector> of_living_instances;
        auto prev = of_living_instances.lock();
        if (!prev) of_living_instances = prev = std::make_shared<Vector>(Vector::Zero());
-       law.rate.derivative = [prev](const Vector&, const Vector& rates, float dt,
-                                    const RateGains& gains) {
-         const Vector d = RateStages::Law::derivative(*prev, rates, dt, gains);
-         *prev = rates;
-         return d;
-       };
+       change_stage(law.rate.derivative,
+                    [prev](const auto& then, const Vector&, const Vector& rates, float dt,
+                           const RateGains& gains) {
+                      const Vector d = then(*prev, rates, dt, gains);
+                      *prev = rates;
+                      return d;
+                    });
      }},
     {"vtol-silent", "arming", Stage::output, "publishes no actuators for a VTOL", "is_vtol",
      "a helpful extra",

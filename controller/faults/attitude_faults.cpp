@@ -35,11 +35,12 @@ void normalise(Q& q) {
 // The tilt error with another function from sine and cosine to the angle.
 template <typename Angle>
 void change_tilt_angle(FaultyLaw& law, Angle angle) {
-  law.attitude.tilt_error = [angle](const Matrix& R_WB, const Matrix& R_WD) {
-    Tilt tilt = AttitudeStages::Law::tilt_error(R_WB, R_WD);
-    if (tilt.sine > 0) tilt.rotation_B = tilt.axis_B * angle(tilt.sine, tilt.cosine);
-    return tilt;
-  };
+  change_stage(law.attitude.tilt_error,
+               [angle](const auto& then, const Matrix& R_WB, const Matrix& R_WD) {
+                 Tilt tilt = then(R_WB, R_WD);
+                 if (tilt.sine > 0) tilt.rotation_B = tilt.axis_B * angle(tilt.sine, tilt.cosine);
+                 return tilt;
+               });
 }
 
 // The tilt error with an axis other than R^T (z x z_sp).
@@ -197,14 +198,15 @@ const Fault attitude_list[] = {
     {"tilt-dead-band", "attitude", Stage::tilt, "treats tilts below 0.06 deg as 0", "a tiny error",
      "wrong branch threshold",
      [](FaultyLaw& law) {
-       law.attitude.tilt_error = [](const Matrix& R_WB, const Matrix& R_WD) {
-         Tilt tilt = AttitudeStages::Law::tilt_error(R_WB, R_WD);
-         if (tilt.sine < 1e-3f) {
-           tilt.sine = 0;
-           tilt.rotation_B.setZero();
-         }
-         return tilt;
-       };
+       change_stage(law.attitude.tilt_error,
+                    [](const auto& then, const Matrix& R_WB, const Matrix& R_WD) {
+                      Tilt tilt = then(R_WB, R_WD);
+                      if (tilt.sine < 1e-3f) {
+                        tilt.sine = 0;
+                        tilt.rotation_B.setZero();
+                      }
+                      return tilt;
+                    });
      }},
     {"fast-atan2", "attitude", Stage::tilt, "approximates atan2 to 4e-3", "a tilt of 10 to 80 deg",
      "fast math",

@@ -14,39 +14,43 @@ using Sample = BatteryStages::Sample;
 
 template <typename Drop>
 void change_drop(FaultyLaw& law, Drop drop) {
-  law.battery.load_drop_V = [drop](const Sample& sample, const Options& options) {
-    return drop(Law::load_drop_V(sample, options), sample, options);
-  };
+  change_stage(law.battery.load_drop_V,
+               [drop](const auto& then, const Sample& sample, const Options& options) {
+                 return drop(then(sample, options), sample, options);
+               });
 }
 
 const Fault battery_status_list[] = {
     {"battery-status-pack", "battery_status", Stage::battery_status,
      "uses the voltage of the pack as that of a cell", "always", "a missing factor",
      [](FaultyLaw& law) {
-       law.battery.measured = [](const Sample& sample, float drop, const Options& options) {
-         Options one_cell = options;
-         one_cell.cell_count = 1;
-         return Law::measured(sample, drop, one_cell);
-       };
+       change_stage(law.battery.measured,
+                    [](const auto& then, const Sample& sample, float drop, const Options& options) {
+                      Options one_cell = options;
+                      one_cell.cell_count = 1;
+                      return then(sample, drop, one_cell);
+                    });
      }},
     {"battery-status-three-cells", "battery_status", Stage::battery_status,
      "always assumes three cells", "another number of cells", "a wrong parameter",
      [](FaultyLaw& law) {
-       law.battery.measured = [](const Sample& sample, float drop, const Options& options) {
-         Options three_cells = options;
-         three_cells.cell_count = 3;
-         return Law::measured(sample, drop, three_cells);
-       };
+       change_stage(law.battery.measured,
+                    [](const auto& then, const Sample& sample, float drop, const Options& options) {
+                      Options three_cells = options;
+                      three_cells.cell_count = 3;
+                      return then(sample, drop, three_cells);
+                    });
      }},
     {"battery-status-default-voltages", "battery_status", Stage::battery_status,
      "keeps the default voltages of a cell", "other voltages", "a wrong parameter",
      [](FaultyLaw& law) {
-       law.battery.measured = [](const Sample& sample, float drop, const Options& options) {
-         return Law::measured(sample, drop, Options{.cell_count = options.cell_count});
-       };
-       law.battery.scale = [](float remaining, const Options&) {
-         return Law::scale(remaining, Options{});
-       };
+       change_stage(law.battery.measured,
+                    [](const auto& then, const Sample& sample, float drop, const Options& options) {
+                      return then(sample, drop, Options{.cell_count = options.cell_count});
+                    });
+       change_stage(law.battery.scale, [](const auto& then, float remaining, const Options&) {
+         return then(remaining, Options{});
+       });
      }},
     {"battery-status-no-load", "battery_status", Stage::battery_status,
      "does not correct for the load", "throttle while armed", "a missing term",
@@ -61,26 +65,29 @@ const Fault battery_status_list[] = {
     {"battery-status-load-disarmed", "battery_status", Stage::battery_status,
      "corrects for a load while disarmed", "throttle while disarmed", "a condition dropped",
      [](FaultyLaw& law) {
-       law.battery.load_drop_V = [](Sample sample, const Options& options) {
-         sample.armed = true;
-         return Law::load_drop_V(sample, options);
-       };
+       change_stage(law.battery.load_drop_V,
+                    [](const auto& then, Sample sample, const Options& options) {
+                      sample.armed = true;
+                      return then(sample, options);
+                    });
      }},
     {"battery-status-throttle-clamped", "battery_status", Stage::battery_status,
      "clamps the throttle to 1", "throttle beyond 1", "a helpful clamp",
      [](FaultyLaw& law) {
-       law.battery.load_drop_V = [](Sample sample, const Options& options) {
-         sample.throttle = std::clamp(sample.throttle, -1.0f, 1.0f);
-         return Law::load_drop_V(sample, options);
-       };
+       change_stage(law.battery.load_drop_V,
+                    [](const auto& then, Sample sample, const Options& options) {
+                      sample.throttle = std::clamp(sample.throttle, -1.0f, 1.0f);
+                      return then(sample, options);
+                    });
      }},
     {"battery-status-no-charging", "battery_status", Stage::battery_status,
      "treats a charging current as 0", "a current below 0", "a helpful clamp",
      [](FaultyLaw& law) {
-       law.battery.load_drop_V = [](Sample sample, const Options& options) {
-         sample.current_A = std::max(sample.current_A, 0.0f);
-         return Law::load_drop_V(sample, options);
-       };
+       change_stage(law.battery.load_drop_V,
+                    [](const auto& then, Sample sample, const Options& options) {
+                      sample.current_A = std::max(sample.current_A, 0.0f);
+                      return then(sample, options);
+                    });
      }},
     {"battery-status-no-idle-share", "battery_status", Stage::battery_status,
      "computes a drop of 0 at zero throttle", "throttle below full while armed", "a missing term",
@@ -109,10 +116,11 @@ const Fault battery_status_list[] = {
     {"battery-status-no-resistance", "battery_status", Stage::battery_status,
      "ignores a known resistance", "a known resistance", "a missing branch",
      [](FaultyLaw& law) {
-       law.battery.load_drop_V = [](const Sample& sample, Options options) {
-         options.internal_resistance_ohm.reset();
-         return Law::load_drop_V(sample, options);
-       };
+       change_stage(law.battery.load_drop_V,
+                    [](const auto& then, const Sample& sample, Options options) {
+                      options.internal_resistance_ohm.reset();
+                      return then(sample, options);
+                    });
      }},
     {"battery-status-both-drops", "battery_status", Stage::battery_status,
      "adds the modelled drop to that of the resistance", "a known resistance",
@@ -142,25 +150,27 @@ const Fault battery_status_list[] = {
     {"battery-status-filter-exchanged", "battery_status", Stage::battery_status,
      "exchanges the weights of the filter", "a voltage that changes", "wrong order",
      [](FaultyLaw& law) {
-       law.battery.remaining = [](float before, float measured) {
-         return Law::remaining(measured, before);
-       };
+       change_stage(law.battery.remaining, [](const auto& then, float before, float measured) {
+         return then(measured, before);
+       });
      }},
     {"battery-status-first-sample-starts", "battery_status", Stage::battery_status,
      "starts the filter at the first sample instead of at a full battery", "the first seconds",
      "a wrong initial value",
      [](FaultyLaw& law) {
-       law.battery.remaining = [is_first = true](float before, float measured) mutable {
-         const bool starts = std::exchange(is_first, false) && std::isfinite(measured);
-         return starts ? std::clamp(measured, 0.0f, 1.0f) : Law::remaining(before, measured);
-       };
+       change_stage(law.battery.remaining,
+                    [is_first = true](const auto& then, float before, float measured) mutable {
+                      const bool starts = std::exchange(is_first, false) && std::isfinite(measured);
+                      return starts ? std::clamp(measured, 0.0f, 1.0f) : then(before, measured);
+                    });
      }},
     {"battery-status-filter-from-0", "battery_status", Stage::battery_status,
      "starts the filter at 0", "the first seconds", "a wrong initial value",
      [](FaultyLaw& law) {
-       law.battery.remaining = [is_first = true](float before, float measured) mutable {
-         return Law::remaining(std::exchange(is_first, false) ? 0.0f : before, measured);
-       };
+       change_stage(law.battery.remaining,
+                    [is_first = true](const auto& then, float before, float measured) mutable {
+                      return then(std::exchange(is_first, false) ? 0.0f : before, measured);
+                    });
      }},
     {"battery-status-filter-faster", "battery_status", Stage::battery_status,
      "filters with 0.98 and 0.02", "a voltage that changes", "a wrong constant",
@@ -177,9 +187,9 @@ const Fault battery_status_list[] = {
      "clamps the sample instead of the filter",
      "a voltage beyond full while the filter is below full", "a misplaced clamp",
      [](FaultyLaw& law) {
-       law.battery.remaining = [](float before, float measured) {
-         return Law::remaining(before, std::clamp(measured, 0.0f, 1.0f));
-       };
+       change_stage(law.battery.remaining, [](const auto& then, float before, float measured) {
+         return then(before, std::clamp(measured, 0.0f, 1.0f));
+       });
      }},
     {"battery-status-nan-stays", "battery_status", Stage::battery_status,
      "does not reject a sample that is not finite", "a voltage that is NaN or infinite",
@@ -208,18 +218,18 @@ const Fault battery_status_list[] = {
      "compares the voltage of a cell with 2.1 V instead of that of the pack",
      "a pack of 3 cells below 6.3 V", "the wrong signal",
      [](FaultyLaw& law) {
-       law.battery.is_plugged_in = [](float filtered_V) {
-         return Law::is_plugged_in(filtered_V / 3);
-       };
+       change_stage(law.battery.is_plugged_in,
+                    [](const auto& then, float filtered_V) { return then(filtered_V / 3); });
      }},
     {"battery-status-infinite-is-1", "battery_status", Stage::battery_status,
      "returns 1 instead of 1.3 for an infinite scale", "cells that are empty at 0 V", "wrong order",
      [](FaultyLaw& law) {
-       law.battery.scale = [](float remaining, const Options& options) {
-         const float factor =
-             options.full_cell_V / (options.empty_cell_V + Law::range_V(options) * remaining);
-         return std::isfinite(factor) ? Law::scale(remaining, options) : 1.0f;
-       };
+       change_stage(
+           law.battery.scale, [](const auto& then, float remaining, const Options& options) {
+             const float factor =
+                 options.full_cell_V / (options.empty_cell_V + Law::range_V(options) * remaining);
+             return std::isfinite(factor) ? then(remaining, options) : 1.0f;
+           });
      }},
     {"battery-status-never", "battery_status", Stage::battery_status, "always returns 1",
      "a battery that is not full", "a missing step",
@@ -227,9 +237,10 @@ const Fault battery_status_list[] = {
     {"battery-status-inverse", "battery_status", Stage::battery_status,
      "returns the inverse of the scale", "a battery that is not full", "a wrong factor",
      [](FaultyLaw& law) {
-       law.battery.scale = [](float remaining, const Options& options) {
-         return 1 / Law::scale(remaining, options);
-       };
+       change_stage(law.battery.scale,
+                    [](const auto& then, float remaining, const Options& options) {
+                      return 1 / then(remaining, options);
+                    });
      }},
     {"battery-status-by-charge", "battery_status", Stage::battery_status,
      "divides by the remaining charge", "a battery that is not full", "another law",

@@ -52,10 +52,11 @@ const Fault quaternion_list[] = {
      [](FaultyLaw& law) {
        auto sign = std::make_shared<float>(1.0f);
        auto& stages = law.attitude_unit.attitude;
-       stages.tilt_rotation = [sign](const Quat& q_WB, const Quat& q_WD) {
-         *sign = q_WB[0] < 0 ? -1.0f : 1.0f;
-         return QuaternionStages::Law::tilt_rotation(q_WB, q_WD);
-       };
+       change_stage(stages.tilt_rotation,
+                    [sign](const auto& then, const Quat& q_WB, const Quat& q_WD) {
+                      *sign = q_WB[0] < 0 ? -1.0f : 1.0f;
+                      return then(q_WB, q_WD);
+                    });
        stages.remaining_yaw = [sign](const Quat& tilted, const Quat& q_WD) {
          return Quat(product(inverse(tilted), q_WD) * *sign);
        };
@@ -136,17 +137,18 @@ const Fault quaternion_list[] = {
     {"cascade-tilt-backwards", "attitude", Stage::tilt,
      "turns the desired thrust axis to the present one", "any tilt error", "arguments exchanged",
      [](FaultyLaw& law) {
-       law.attitude_unit.attitude.tilt_rotation = [](const Quat& q_WB, const Quat& q_WD) {
-         return QuaternionStages::Law::tilt_rotation(q_WD, q_WB);
-       };
+       change_stage(
+           law.attitude_unit.attitude.tilt_rotation,
+           [](const auto& then, const Quat& q_WB, const Quat& q_WD) { return then(q_WD, q_WB); });
      }},
     {"cascade-tilt-axes-in-body", "attitude", Stage::tilt,
      "compares the world's z axis in the two bodies, not the bodies' z axes in the world",
      "a tilt error at a heading other than north", "transposed rotation",
      [](FaultyLaw& law) {
-       law.attitude_unit.attitude.tilt_rotation = [](const Quat& q_WB, const Quat& q_WD) {
-         return QuaternionStages::Law::tilt_rotation(conjugated(q_WB), conjugated(q_WD));
-       };
+       change_stage(law.attitude_unit.attitude.tilt_rotation,
+                    [](const auto& then, const Quat& q_WB, const Quat& q_WD) {
+                      return then(conjugated(q_WB), conjugated(q_WD));
+                    });
      }},
     {"cascade-target-elementwise", "attitude", Stage::blend,
      "multiplies the target's quaternions element by element", "any yaw error", "another product",
@@ -174,12 +176,12 @@ const Fault quaternion_list[] = {
      "any error", "wrong axis", exchange_gains<1, 2>},
     {"cascade-pitch-reversed", "attitude", Stage::p, "reverses pitch", "a pitch error", "a sign",
      [](FaultyLaw& law) {
-       law.attitude_unit.attitude.proportional = [](const Quat& error,
-                                                    const QuaternionGains& gains) {
-         Vector rates = QuaternionStages::Law::proportional(error, gains);
-         rates[1] = -rates[1];
-         return rates;
-       };
+       change_stage(law.attitude_unit.attitude.proportional,
+                    [](const auto& then, const Quat& error, const QuaternionGains& gains) {
+                      Vector rates = then(error, gains);
+                      rates[1] = -rates[1];
+                      return rates;
+                    });
      }},
     {"cascade-thrust-z-only", "attitude", Stage::output,
      "passes on the z component of the thrust only", "a setpoint with thrust along x or y",

@@ -21,11 +21,11 @@ void exchange(FaultyLaw& law) {
 // parameters.
 template <typename Change>
 void change_rate_max(FaultyLaw& law, Change change) {
-  law.attitude_unit.attitude.limit = [change, then = law.attitude_unit.attitude.limit](
-                                         const Vector& rates, QuaternionGains gains) {
-    change(gains.rate_max_rad_s);
-    return then(rates, gains);
-  };
+  change_stage(law.attitude_unit.attitude.limit,
+               [change](const auto& then, const Vector& rates, QuaternionGains gains) {
+                 change(gains.rate_max_rad_s);
+                 return then(rates, gains);
+               });
 }
 template <int one, int other>
 void exchange_rate_max(FaultyLaw& law) {

@@ -13,7 +13,7 @@ using Battery = RateStepStages::Battery;
 
 template <typename Scale>
 void change_battery_scale(FaultyLaw& law, Scale scale) {
-  law.rate_unit.step.battery_scale = scale;
+  change_stage(law.rate_unit.step.battery_scale, scale);
 }
 
 template <typename Scaled>
@@ -35,13 +35,13 @@ void scale_with_sample(FaultyLaw& law) {
   auto is_new = std::make_shared<bool>(false);
   also_before(law.rate_unit, [is_new](RateIn&) { *is_new = false; });
   auto& step = law.rate_unit.step;
-  step.battery_scale = [is_new, then = step.battery_scale](Scalar, const Battery& sample) {
+  change_stage(step.battery_scale, [is_new](const auto& then, Scalar, const Battery& sample) {
     *is_new = true;
     return then(0, sample);
-  };
-  step.scaled = [is_new, then = step.scaled](Scalar control, Scalar scale) {
+  });
+  change_stage(step.scaled, [is_new](const auto& then, Scalar control, Scalar scale) {
     return *is_new ? then(control, scale) : control;
-  };
+  });
 }
 
 const Fault battery_list[] = {
@@ -87,18 +87,17 @@ const Fault battery_list[] = {
      "uses the scale of a battery that is not connected", "a battery that is not connected",
      "a missing condition",
      [](FaultyLaw& law) {
-       change_battery_scale(law, [](Scalar before, Battery sample) {
+       change_battery_scale(law, [](const auto& then, Scalar before, Battery sample) {
          sample.connected = 1;
-         return RateStepLaw::battery_scale(before, sample);
+         return then(before, sample);
        });
      }},
     {"cascade-battery-forgotten", "battery", Stage::scaling,
      "does not scale after a battery is no longer connected", "a battery that is disconnected",
      "a missing latch",
      [](FaultyLaw& law) {
-       change_battery_scale(law, [](Scalar, const Battery& sample) {
-         return RateStepLaw::battery_scale(0, sample);
-       });
+       change_battery_scale(
+           law, [](const auto& then, Scalar, const Battery& sample) { return then(0, sample); });
      }},
     {"cascade-battery-with-sample-only", "battery", Stage::scaling,
      "scales only in a step with a new battery sample", "a step without a sample",
@@ -106,29 +105,29 @@ const Fault battery_list[] = {
     {"cascade-battery-scale-0", "battery", Stage::scaling, "uses a scale that is not positive",
      "a scale of 0 after another", "a missing condition",
      [](FaultyLaw& law) {
-       change_battery_scale(law, [](Scalar before, const Battery& sample) {
+       change_battery_scale(law, [](const auto&, Scalar before, const Battery& sample) {
          return sample.connected != 0 ? sample.scale : before;
        });
      }},
     {"cascade-battery-first-scale", "battery", Stage::scaling,
      "keeps the first scale that it receives", "a scale that changes", "a latch",
      [](FaultyLaw& law) {
-       change_battery_scale(law, [](Scalar before, const Battery& sample) {
-         return before > 0 ? before : RateStepLaw::battery_scale(before, sample);
+       change_battery_scale(law, [](const auto& then, Scalar before, const Battery& sample) {
+         return before > 0 ? before : then(before, sample);
        });
      }},
     {"cascade-battery-not-below-1", "battery", Stage::scaling, "ignores scales below 1",
      "a scale of 0.9", "a helpful extra",
      [](FaultyLaw& law) {
-       change_battery_scale(law, [](Scalar before, const Battery& sample) {
-         return sample.scale < 1 ? before : RateStepLaw::battery_scale(before, sample);
+       change_battery_scale(law, [](const auto& then, Scalar before, const Battery& sample) {
+         return sample.scale < 1 ? before : then(before, sample);
        });
      }},
     {"cascade-battery-finite-only", "robustness", Stage::scaling, "ignores an infinite scale",
      "a scale of infinity", "a helpful extra",
      [](FaultyLaw& law) {
-       change_battery_scale(law, [](Scalar before, const Battery& sample) {
-         return std::isfinite(sample.scale) ? RateStepLaw::battery_scale(before, sample) : before;
+       change_battery_scale(law, [](const auto& then, Scalar before, const Battery& sample) {
+         return std::isfinite(sample.scale) ? then(before, sample) : before;
        });
      }},
     {"cascade-battery-enable-is-1", "battery", Stage::parameters,
@@ -142,10 +141,11 @@ const Fault battery_list[] = {
      "loses a battery sample that arrives while scaling is off", "MC_BAT_SCALE_EN set in flight",
      "a missing state",
      [](FaultyLaw& law) {
-       law.rate_unit.step.pending = [](std::uint32_t before, std::uint32_t updated) {
-         constexpr std::uint32_t battery = ATTEST_RATE_UPDATED_BATTERY_STATUS;
-         return RateStepLaw::pending(before & ~battery, updated);
-       };
+       change_stage(law.rate_unit.step.pending,
+                    [](const auto& then, std::uint32_t before, std::uint32_t updated) {
+                      constexpr std::uint32_t battery = ATTEST_RATE_UPDATED_BATTERY_STATUS;
+                      return then(before & ~battery, updated);
+                    });
      }},
     {"cascade-torque-not-guarded", "robustness", Stage::guard,
      "publishes a torque that is not finite", "one NaN of the gyro", "a missing guard",

@@ -43,31 +43,33 @@ inline Quat conjugated(const Quat& q) { return {q[0], -q[1], -q[2], -q[3]}; }
 // signature void(Gains&, const CascadeParameters&).
 template <typename Unit, typename Change>
 void change_gains(Unit& unit, Change change) {
-  unit.step.gains = [then = unit.step.gains, change](const CascadeParameters& parameters) mutable {
-    auto gains = then(parameters);
-    change(gains, parameters);
-    return gains;
-  };
+  change_stage(unit.step.gains,
+               [change](const auto& then, const CascadeParameters& parameters) mutable {
+                 auto gains = then(parameters);
+                 change(gains, parameters);
+                 return gains;
+               });
 }
 
 // Computes the gains from changed parameters. Change has the signature void(CascadeParameters&).
 template <typename Unit, typename Change>
 void change_parameters(Unit& unit, Change change) {
-  unit.step.gains = [then = unit.step.gains, change](const CascadeParameters& parameters) mutable {
-    CascadeParameters changed = parameters;
-    change(changed);
-    return then(changed);
-  };
+  change_stage(unit.step.gains,
+               [change](const auto& then, const CascadeParameters& parameters) mutable {
+                 CascadeParameters changed = parameters;
+                 change(changed);
+                 return then(changed);
+               });
 }
 
 // Changes the traits of the unit's profile. Change has the signature void(CascadeTraits&).
 template <typename Unit, typename Change>
 void change_traits(Unit& unit, Change change) {
-  unit.step.traits = [then = unit.step.traits, change](cascade::Profile profile) {
+  change_stage(unit.step.traits, [change](const auto& then, cascade::Profile profile) {
     CascadeTraits traits = then(profile);
     change(traits);
     return traits;
-  };
+  });
 }
 
 // Sets one trait to `value`, which it has in another profile.

@@ -30,20 +30,20 @@ void change_tilt_filter(FaultyLaw& law, Filter filter) {
     own->roll_stick = in.manual_control_setpoint.roll;
     own->pitch_stick = in.manual_control_setpoint.pitch;
   });
-  unit.step.step_time = [own, then = unit.step.step_time](std::uint64_t now, std::uint64_t last) {
+  change_stage(unit.step.step_time, [own](const auto& then, std::uint64_t now, std::uint64_t last) {
     return own->dt_s = then(now, last);
-  };
-  unit.sticks.clears_tilt = [own, then = unit.sticks.clears_tilt](bool runs,
-                                                                  const CascadeTraits& traits) {
-    const bool clears = then(runs, traits);
-    if (clears) own->roll.state = own->pitch.state = 0;
-    return clears;
-  };
-  unit.sticks.limited_tilt = [own, filter, then = unit.sticks.limited_tilt](
-                                 Scalar, Scalar, const StickGains& gains) mutable {
-    const auto [roll, pitch] = filter(*own, gains);
-    return then(roll, -pitch, gains);
-  };
+  });
+  change_stage(unit.sticks.clears_tilt,
+               [own](const auto& then, bool runs, const CascadeTraits& traits) {
+                 const bool clears = then(runs, traits);
+                 if (clears) own->roll.state = own->pitch.state = 0;
+                 return clears;
+               });
+  change_stage(unit.sticks.limited_tilt,
+               [own, filter](const auto& then, Scalar, Scalar, const StickGains& gains) mutable {
+                 const auto [roll, pitch] = filter(*own, gains);
+                 return then(roll, -pitch, gains);
+               });
 }
 
 // Replaces the low-pass of the yaw stick. Filter is Scalar(LowPass&, tau_s, dt_s, input). The law's
@@ -52,15 +52,15 @@ template <typename Filter>
 void change_yaw_stick_filter(FaultyLaw& law, Filter filter) {
   auto dt_s = std::make_shared<Scalar>(0.0f);
   auto& unit = law.attitude_unit;
-  unit.step.step_time = [dt_s, then = unit.step.step_time](std::uint64_t now, std::uint64_t last) {
-    return *dt_s = then(now, last);
-  };
-  unit.sticks.shaped_yaw_rate = [dt_s, filter, own = LowPass{}, then = unit.sticks.shaped_yaw_rate](
-                                    Scalar stick, const StickGains& gains) mutable {
-    const Scalar before = own.state, tau_s = gains.yaw_tau_s;
-    const Scalar after = filter(own, tau_s, *dt_s, then(stick, gains));
-    return before + (after - before) * ((tau_s + *dt_s) / *dt_s);
-  };
+  change_stage(unit.step.step_time, [dt_s](const auto& then, std::uint64_t now,
+                                           std::uint64_t last) { return *dt_s = then(now, last); });
+  change_stage(unit.sticks.shaped_yaw_rate,
+               [dt_s, filter, own = LowPass{}](const auto& then, Scalar stick,
+                                               const StickGains& gains) mutable {
+                 const Scalar before = own.state, tau_s = gains.yaw_tau_s;
+                 const Scalar after = filter(own, tau_s, *dt_s, then(stick, gains));
+                 return before + (after - before) * ((tau_s + *dt_s) / *dt_s);
+               });
 }
 
 // Replaces all low-passes. Filter is Scalar(LowPass&, tau_s, dt_s, input); each has its own copy.
@@ -74,14 +74,14 @@ void change_low_passes(FaultyLaw& law, Filter filter) {
       });
   change_yaw_stick_filter(law, filter);
   auto& correct = law.attitude_unit.sticks.correct_yaw;
-  correct = [filter, then = correct](YawCorrection& state, Scalar heading, Scalar unaided,
-                                     Scalar dt_s, const CascadeTraits& traits) mutable {
+  change_stage(correct, [filter](const auto& then, YawCorrection& state, Scalar heading,
+                                 Scalar unaided, Scalar dt_s, const CascadeTraits& traits) mutable {
     const bool filters = std::isfinite(unaided) && !state.lost;
     LowPass error = state.error;
     const bool converged = then(state, heading, unaided, dt_s, traits);
     if (filters) state.error.state = filter(error, 1, dt_s, cascade::wrap(heading - unaided));
     return converged;
-  };
+  });
   law.rate_unit.step.filtered_yaw = [filter](LowPass& torque_filter, Scalar torque, Scalar dt_s,
                                              const RateUnitGains& gains,
                                              const CascadeTraits&) mutable {

@@ -70,16 +70,14 @@ void normalise_roughly(FaultyLaw& law) {
 // Changes dt in all parts of the rate unit that use it. Change is Scalar(dt_s).
 template <typename Change>
 void change_rate_dt(FaultyLaw& law, Change change) {
-  law.rate_unit.rate.integrated = [change, then = law.rate_unit.rate.integrated](
-                                      Scalar integral, Scalar factor, Scalar gain, Scalar error,
-                                      Scalar dt_s) {
-    return then(integral, factor, gain, error, change(dt_s));
-  };
-  law.rate_unit.step.filtered_yaw = [change, then = law.rate_unit.step.filtered_yaw](
-                                        RateStepStages::LowPass& filter, Scalar torque, Scalar dt_s,
-                                        const RateUnitGains& gains, const CascadeTraits& traits) {
-    return then(filter, torque, change(dt_s), gains, traits);
-  };
+  change_stage(law.rate_unit.rate.integrated,
+               [change](const auto& then, Scalar integral, Scalar factor, Scalar gain, Scalar error,
+                        Scalar dt_s) { return then(integral, factor, gain, error, change(dt_s)); });
+  change_stage(law.rate_unit.step.filtered_yaw,
+               [change](const auto& then, RateStepStages::LowPass& filter, Scalar torque,
+                        Scalar dt_s, const RateUnitGains& gains, const CascadeTraits& traits) {
+                 return then(filter, torque, change(dt_s), gains, traits);
+               });
 }
 
 // Each step integrates the mean of its error and of that of the step before.
@@ -90,27 +88,27 @@ void integrate_trapezoids(FaultyLaw& law) {
   };
   auto errors = std::make_shared<Errors>();
   auto& stages = law.rate_unit.rate;
-  stages.error = [errors, then = stages.error](V rates_sp, V rates) {
+  change_stage(stages.error, [errors](const auto& then, V rates_sp, V rates) {
     errors->last = std::exchange(errors->now, then(rates_sp, rates));
     errors->axis = 0;
     return errors->now;
-  };
-  stages.unsaturated = [errors, then = stages.unsaturated](Scalar error, bool positive,
-                                                           bool negative) {
-    return then(0.5f * (error + errors->last[errors->axis++]), positive, negative);
-  };
+  });
+  change_stage(stages.unsaturated,
+               [errors](const auto& then, Scalar error, bool positive, bool negative) {
+                 return then(0.5f * (error + errors->last[errors->axis++]), positive, negative);
+               });
 }
 
 void feed_measured_rates_forward(FaultyLaw& law) {
   auto measured = std::make_shared<Vector>(Vector::Zero());
   auto& stages = law.rate_unit.rate;
-  stages.error = [measured, then = stages.error](V rates_sp, V rates) {
+  change_stage(stages.error, [measured](const auto& then, V rates_sp, V rates) {
     *measured = rates;
     return then(rates_sp, rates);
-  };
-  stages.feed_forward = [measured, then = stages.feed_forward](V, const TorqueGains& gains) {
+  });
+  change_stage(stages.feed_forward, [measured](const auto& then, V, const TorqueGains& gains) {
     return then(*measured, gains);
-  };
+  });
 }
 
 template <typename Change>
@@ -129,19 +127,20 @@ Scalar squared_for_cubed(Scalar stick, Scalar share) {
 }
 
 void square_in_expo(FaultyLaw& law) {
-  law.rate_unit.step.acro = [then = law.rate_unit.step.acro](
-                                const RateStepStages::Law::Sticks& sticks,
-                                const cascade::AcroGains<Scalar>& gains) {
-    RateStepStages::Setpoint setpoint = then(sticks, gains);
-    const float stick[] = {sticks.roll, sticks.pitch, sticks.yaw};
-    for (int i = 0; i < 3; ++i) setpoint.rates_B[i] *= squared_for_cubed(stick[i], gains.expo[i]);
-    return setpoint;
-  };
+  change_stage(law.rate_unit.step.acro,
+               [](const auto& then, const RateStepStages::Law::Sticks& sticks,
+                  const cascade::AcroGains<Scalar>& gains) {
+                 RateStepStages::Setpoint setpoint = then(sticks, gains);
+                 const float stick[] = {sticks.roll, sticks.pitch, sticks.yaw};
+                 for (int i = 0; i < 3; ++i)
+                   setpoint.rates_B[i] *= squared_for_cubed(stick[i], gains.expo[i]);
+                 return setpoint;
+               });
   auto& shaped = law.attitude_unit.sticks.shaped_yaw_rate;
-  shaped = [then = shaped](Scalar stick, const StickGains& gains) {
+  change_stage(shaped, [](const auto& then, Scalar stick, const StickGains& gains) {
     const Scalar x = cascade::deadzone(stick, gains.yaw_deadzone);
     return then(stick, gains) * squared_for_cubed(x, gains.yaw_expo);
-  };
+  });
 }
 
 const Fault formula_list[] = {
@@ -161,9 +160,9 @@ const Fault formula_list[] = {
      "halves the angle of the yaw once more for the quaternion", "any yaw error", "a factor twice",
      [](FaultyLaw& law) {
        auto& weighted = law.attitude_unit.attitude.weighted_yaw;
-       weighted = [then = weighted](Scalar w, Scalar z, Scalar weight) {
+       change_stage(weighted, [](const auto& then, Scalar w, Scalar z, Scalar weight) {
          return then(w, z, weight * 0.5f);
-       };
+       });
      }},
     {"cascade-yaw-gain-by-default-weight", "yaw_weight", Stage::parameters,
      "divides the yaw gain by 0.4, the default of MC_YAW_WEIGHT", "another MC_YAW_WEIGHT",
@@ -199,10 +198,8 @@ const Fault formula_list[] = {
     {"cascade-int-lim-0.3", "parameters", Stage::i, "limits the integral of every axis to 0.3",
      "another limit", "a constant for a parameter",
      [](FaultyLaw& law) {
-       law.rate_unit.rate.limited = [then = law.rate_unit.rate.limited](Scalar next, Scalar before,
-                                                                        Scalar) {
-         return then(next, before, 0.3f);
-       };
+       change_stage(law.rate_unit.rate.limited, [](const auto& then, Scalar next, Scalar before,
+                                                   Scalar) { return then(next, before, 0.3f); });
      }},
     {"cascade-int-lim-with-k", "parameters", Stage::parameters,
      "multiplies the limits of the integral by K", "a K other than 1 and an error that lasts",

@@ -36,14 +36,15 @@ void drop_other_norms(FaultyLaw& law) {
     judge(cascade::quaternion_from<Scalar>(in.vehicle_attitude_setpoint.q_d));
   });
   auto& desired = unit.sticks.desired_attitude;
-  desired = [judge, then = desired](const Quat& yaw, const Quat& tilt) {
+  change_stage(desired, [judge](const auto& then, const Quat& yaw, const Quat& tilt) {
     const Quat q_WD = then(yaw, tilt);
     judge(q_WD);
     return q_WD;
-  };
-  unit.step.is_newer = [usable, then = unit.step.is_newer](std::uint64_t now, std::uint64_t last) {
-    return *usable && then(now, last);
-  };
+  });
+  change_stage(unit.step.is_newer,
+               [usable](const auto& then, std::uint64_t now, std::uint64_t last) {
+                 return *usable && then(now, last);
+               });
 }
 
 const Fault guard_list[] = {
@@ -80,26 +81,28 @@ const Fault guard_list[] = {
      "keeps the old attitude setpoint instead of one that is not finite",
      "an attitude setpoint of NaN", "a helpful extra",
      [](FaultyLaw& law) {
-       law.attitude_unit.attitude.setpoint =
-           [last = cascade::identity<Scalar>()](const Quat& given) mutable {
-             const Quat q = QuaternionLaw::setpoint(given);
+       change_stage(
+           law.attitude_unit.attitude.setpoint,
+           [last = cascade::identity<Scalar>()](const auto& then, const Quat& given) mutable {
+             const Quat q = then(given);
              return is_usable(q) ? last = q : last;
-           };
+           });
      }},
     {"cascade-setpoint-0-is-level", "robustness", Stage::guard,
      "takes an attitude setpoint of 0 for level", "an attitude setpoint of 0", "a guard too many",
      [](FaultyLaw& law) {
-       law.attitude_unit.attitude.setpoint = [](const Quat& given) {
-         return given.isZero(0) ? cascade::identity<Scalar>() : QuaternionLaw::setpoint(given);
-       };
+       change_stage(law.attitude_unit.attitude.setpoint, [](const auto& then, const Quat& given) {
+         return given.isZero(0) ? cascade::identity<Scalar>() : then(given);
+       });
      }},
     {"cascade-reset-nan-ignored", "robustness", Stage::guard,
      "does not turn the setpoint by a delta_q_reset that is not finite", "a delta_q_reset of NaN",
      "a guard too many",
      [](FaultyLaw& law) {
-       law.attitude_unit.attitude.adapted = [](const Quat& delta, const Quat& q_WD) {
-         return is_usable(delta) ? QuaternionLaw::adapted(delta, q_WD) : q_WD;
-       };
+       change_stage(law.attitude_unit.attitude.adapted,
+                    [](const auto& then, const Quat& delta, const Quat& q_WD) {
+                      return is_usable(delta) ? then(delta, q_WD) : q_WD;
+                    });
      }},
     {"cascade-rates-nan-is-0", "robustness", Stage::guard, "publishes rates of 0 instead of NaN",
      "an attitude of NaN", "a guard too many",

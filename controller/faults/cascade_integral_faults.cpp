@@ -1,5 +1,4 @@
-// Mistakes of the rate unit of the cascade in what stops or resets the integral: saturation, limit,
-// landing, disarming.
+// Mistakes of the cascade in what stops or resets the integral: saturation, limit, landing, arming.
 #include <algorithm>
 #include <cmath>
 
@@ -16,16 +15,15 @@ using cascade::Saturation;
 // Changes the saturation flags that the law computes from a sample.
 template <typename Change>
 void change_saturation(FaultyLaw& law, Change change) {
-  law.rate_unit.rate.saturation =
-      [change, then = law.rate_unit.rate.saturation](const Allocation& status) mutable {
-        Saturation flags = then(status);
-        change(flags, status);
-        return flags;
-      };
+  auto& stage = law.rate_unit.rate.saturation;
+  change_stage(stage, [change](const auto& then, const Allocation& status) mutable {
+    Saturation flags = then(status);
+    change(flags, status);
+    return flags;
+  });
 }
 
-// Replaces the error that an axis integrates. Error is Scalar(error, positive, negative), with the
-// axis's saturation flags.
+// Replaces what an axis integrates. Error is Scalar(error, positive, negative), with its flags.
 template <typename Error>
 void change_unsaturated(FaultyLaw& law, Error error) {
   law.rate_unit.rate.unsaturated = error;
@@ -46,31 +44,31 @@ void saturate_p(FaultyLaw& law) {
   auto now = std::make_shared<Saturation>();
   auto& stages = law.rate_unit.rate;
   change_saturation(law, [now](Saturation& flags, const Allocation&) { *now = flags; });
-  stages.either = [now, then = stages.either](const Saturation& up, const Saturation& down) {
-    return *now = then(up, down);
-  };
-  stages.proportional = [now](Vector error, const TorqueGains& gains) {
-    for (int i = 0; i < 3; ++i) {
-      const auto axis = static_cast<std::size_t>(i);
-      error[i] = RateLaw::unsaturated(error[i], now->positive[axis], now->negative[axis]);
-    }
-    return RateLaw::proportional(error, gains);
-  };
+  change_stage(stages.either, [now](const auto& then, const Saturation& up,
+                                    const Saturation& down) { return *now = then(up, down); });
+  change_stage(
+      stages.proportional, [now](const auto& then, Vector error, const TorqueGains& gains) {
+        for (int i = 0; i < 3; ++i) {
+          const auto axis = static_cast<std::size_t>(i);
+          error[i] = RateLaw::unsaturated(error[i], now->positive[axis], now->negative[axis]);
+        }
+        return then(error, gains);
+      });
 }
 
 template <typename Limit>
 void change_integral_limit(FaultyLaw& law, Limit limit) {
-  law.rate_unit.rate.limited = limit;
+  change_stage(law.rate_unit.rate.limited, limit);
 }
 
 // Changes the two flags that stop the integral on the ground. Change is void(landed, maybe).
 template <typename Change>
 void change_landed(FaultyLaw& law, Change change) {
-  law.rate_unit.rate.may_integrate = [change, then = law.rate_unit.rate.may_integrate](bool landed,
-                                                                                       bool maybe) {
-    change(landed, maybe);
-    return then(landed, maybe);
-  };
+  change_stage(law.rate_unit.rate.may_integrate,
+               [change](const auto& then, bool landed, bool maybe) {
+                 change(landed, maybe);
+                 return then(landed, maybe);
+               });
 }
 
 // Also resets the integral while the newest vehicle_land_detected has landed or maybe_landed set,
@@ -83,9 +81,9 @@ void reset_when_landed(FaultyLaw& law) {
     }
   });
   auto& resets = law.rate_unit.step.resets_integral;
-  resets = [landed, then = resets](const cascade::RateTopics& topics) {
+  change_stage(resets, [landed](const auto& then, const cascade::RateTopics& topics) {
     return then(topics) || *landed;
-  };
+  });
 }
 
 // Also resets the integral while the thrust is below 5%, as firmwares for races do.
@@ -96,23 +94,23 @@ void reset_when_idle(FaultyLaw& law) {
     *is_idle = in.vehicle_rates_setpoint.thrust_body[2] > -0.05f;
   });
   auto& step = law.rate_unit.step;
-  step.acro = [is_idle, then = step.acro](const auto& sticks, const auto& gains) {
+  change_stage(step.acro, [is_idle](const auto& then, const auto& sticks, const auto& gains) {
     const auto setpoint = then(sticks, gains);
     *is_idle = setpoint.thrust_B[2] > -0.05f;
     return setpoint;
-  };
-  step.resets_integral = [is_idle, then = step.resets_integral](const cascade::RateTopics& topics) {
-    return then(topics) || *is_idle;
-  };
+  });
+  change_stage(step.resets_integral, [is_idle](const auto& then, const cascade::RateTopics& in) {
+    return then(in) || *is_idle;
+  });
 }
 
 template <typename Change>
 void change_reset_topics(FaultyLaw& law, Change change) {
   auto& resets = law.rate_unit.step.resets_integral;
-  resets = [change, then = resets](cascade::RateTopics topics) mutable {
-    change(topics);
-    return then(topics);
-  };
+  change_stage(resets, [change](const auto& then, cascade::RateTopics in) mutable {
+    change(in);
+    return then(in);
+  });
 }
 
 const Fault integral_list[] = {
@@ -225,14 +223,14 @@ const Fault integral_list[] = {
     {"cascade-integral-unlimited", "integral_limit", Stage::i, "does not limit the integral",
      "an error that lasts", "a missing clamp",
      [](FaultyLaw& law) {
-       change_integral_limit(law, [](Scalar next, Scalar before, Scalar) {
+       change_integral_limit(law, [](const auto&, Scalar next, Scalar before, Scalar) {
          return std::isfinite(next) ? next : before;
        });
      }},
     {"cascade-integral-limited-above", "integral_limit", Stage::i,
      "limits a positive integral only", "a negative error that lasts", "a missing clamp",
      [](FaultyLaw& law) {
-       change_integral_limit(law, [](Scalar next, Scalar before, Scalar max) {
+       change_integral_limit(law, [](const auto&, Scalar next, Scalar before, Scalar max) {
          return std::isfinite(next) ? std::min(next, max) : before;
        });
      }},
@@ -240,15 +238,15 @@ const Fault integral_list[] = {
      "drops the step that would pass the limit", "an integral that reaches the limit",
      "another limit",
      [](FaultyLaw& law) {
-       change_integral_limit(law, [](Scalar next, Scalar before, Scalar max) {
+       change_integral_limit(law, [](const auto&, Scalar next, Scalar before, Scalar max) {
          return std::abs(next) <= max ? next : before;
        });
      }},
     {"cascade-integral-limit-of-1", "integral_limit", Stage::i, "limits the integral to 1",
      "an error that lasts", "a wrong constant",
      [](FaultyLaw& law) {
-       change_integral_limit(law, [](Scalar next, Scalar before, Scalar) {
-         return RateLaw::limited(next, before, 1.0f);
+       change_integral_limit(law, [](const auto& then, Scalar next, Scalar before, Scalar) {
+         return then(next, before, 1.0f);
        });
      }},
     {"cascade-integral-limit-with-k", "integral_limit", Stage::parameters,
@@ -264,14 +262,16 @@ const Fault integral_list[] = {
      "sets an integral that is not finite to 0 instead of keeping the old one",
      "one NaN of the gyro", "another guard",
      [](FaultyLaw& law) {
-       change_integral_limit(
-           law, [](Scalar next, Scalar, Scalar max) { return RateLaw::limited(next, 0.0f, max); });
+       change_integral_limit(law, [](const auto& then, Scalar next, Scalar, Scalar max) {
+         return then(next, 0.0f, max);
+       });
      }},
     {"cascade-integral-of-nan-kept", "robustness", Stage::guard, "lets the integral become NaN",
      "one NaN of the gyro", "a missing guard",
      [](FaultyLaw& law) {
-       change_integral_limit(
-           law, [](Scalar next, Scalar, Scalar max) { return cascade::clamp(next, -max, max); });
+       change_integral_limit(law, [](const auto&, Scalar next, Scalar, Scalar max) {
+         return cascade::clamp(next, -max, max);
+       });
      }},
     {"cascade-integral-on-the-ground", "landed", Stage::gate, "integrates on the ground",
      "an error while landed", "a missing condition",
@@ -312,20 +312,20 @@ const Fault integral_list[] = {
      "resets the integral when it is disarmed, not in each step", "an error while disarmed",
      "an edge for a level",
      [](FaultyLaw& law) {
-       law.rate_unit.step.resets_integral = [was =
-                                                 false](const cascade::RateTopics& topics) mutable {
-         const bool resets = RateStepStages::Law::resets_integral(topics);
-         return resets && !std::exchange(was, resets);
-       };
+       change_stage(law.rate_unit.step.resets_integral,
+                    [was = false](const auto& then, const cascade::RateTopics& topics) mutable {
+                      const bool resets = then(topics);
+                      return resets && !std::exchange(was, resets);
+                    });
      }},
     {"cascade-disarmed-freezes", "landed", Stage::arming, "does not integrate while disarmed",
      "an error while disarmed and not landed", "a misplaced reset",
      [](FaultyLaw& law) {
        auto resets = std::make_shared<bool>(false);
-       law.rate_unit.step.resets_integral =
-           [resets, then = law.rate_unit.step.resets_integral](const cascade::RateTopics& topics) {
-             return *resets = then(topics);
-           };
+       change_stage(law.rate_unit.step.resets_integral,
+                    [resets](const auto& then, const cascade::RateTopics& topics) {
+                      return *resets = then(topics);
+                    });
        change_landed(law, [resets](bool& landed, bool&) { landed = landed || *resets; });
      }},
     {"cascade-fixed-wing-integrates", "landed", Stage::arming,

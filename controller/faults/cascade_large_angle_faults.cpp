@@ -25,13 +25,14 @@ Quat with_positive_w(const Quat& q) { return q[0] < 0 ? Quat(-q) : q; }
 // it for the present thrust direction `a`.
 template <typename Axis>
 void change_half_turn_axis(FaultyLaw& law, Axis axis) {
-  law.attitude_unit.attitude.tilt_rotation = [axis](const Quat& q_WB, const Quat& q_WD) {
+  change_stage(law.attitude_unit.attitude.tilt_rotation, [axis](const auto& then, const Quat& q_WB,
+                                                                const Quat& q_WD) {
     const Vector a = cascade::z_axis(q_WB), b = cascade::z_axis(q_WD);
     const bool opposite = cascade::length(cascade::cross(a, b)) < 1e-5f && cascade::dot(a, b) < 0;
-    if (!opposite) return QuaternionStages::Law::tilt_rotation(q_WB, q_WD);
+    if (!opposite) return then(q_WB, q_WD);
     const Vector turn = axis(a);
     return cascade::unit<Scalar>({0, turn[0], turn[1], turn[2]});
-  };
+  });
 }
 
 // The heading by the general formula, also at the poles, where yaw and roll are about one axis.
@@ -89,14 +90,15 @@ const Fault half_turn_list[] = {
      [](FaultyLaw& law) {
        auto& stages = law.attitude_unit.attitude;
        auto opposite = std::make_shared<bool>(false);
-       stages.is_opposite = [opposite](const Quat& tilt) {
-         *opposite = QuaternionStages::Law::is_opposite(tilt);
+       change_stage(stages.is_opposite, [opposite](const auto& then, const Quat& tilt) {
+         *opposite = then(tilt);
          return *opposite;
-       };
-       stages.error = [opposite](const Quat& q_WB, const Quat& target) {
-         if (*opposite) return cascade::identity<Scalar>();
-         return QuaternionStages::Law::error(q_WB, target);
-       };
+       });
+       change_stage(stages.error,
+                    [opposite](const auto& then, const Quat& q_WB, const Quat& target) {
+                      if (*opposite) return cascade::identity<Scalar>();
+                      return then(q_WB, target);
+                    });
      }},
     {"cascade-half-turn-about-x", "large_angle", Stage::tilt,
      "turns about the world's x axis at opposite thrust directions",
@@ -123,25 +125,28 @@ const Fault half_turn_list[] = {
     {"cascade-half-turn-is-identity", "large_angle", Stage::tilt,
      "takes opposite thrust directions for equal ones", "a half turn from level", "a missing case",
      [](FaultyLaw& law) {
-       law.attitude_unit.attitude.tilt_rotation = [](const Quat& q_WB, const Quat& q_WD) {
-         const Vector a = cascade::z_axis(q_WB), b = cascade::z_axis(q_WD);
-         if (cascade::length(cascade::cross(a, b)) < 1e-5f) return cascade::identity<Scalar>();
-         return QuaternionStages::Law::tilt_rotation(q_WB, q_WD);
-       };
+       change_stage(law.attitude_unit.attitude.tilt_rotation,
+                    [](const auto& then, const Quat& q_WB, const Quat& q_WD) {
+                      const Vector a = cascade::z_axis(q_WB), b = cascade::z_axis(q_WD);
+                      if (cascade::length(cascade::cross(a, b)) < 1e-5f)
+                        return cascade::identity<Scalar>();
+                      return then(q_WB, q_WD);
+                    });
      }},
     {"cascade-tilt-of-unit-axis-angle", "large_angle", Stage::tilt,
      "computes the tilt angle with asin: it is at most 90 deg", "a tilt error beyond 90 deg",
      "another angle",
      [](FaultyLaw& law) {
-       law.attitude_unit.attitude.tilt_rotation = [](const Quat& q_WB, const Quat& q_WD) {
-         const Quat r = QuaternionStages::Law::tilt_rotation(q_WB, q_WD);
+       change_stage(law.attitude_unit.attitude.tilt_rotation, [](const auto& then, const Quat& q_WB,
+                                                                 const Quat& q_WD) {
+         const Quat r = then(q_WB, q_WD);
          const Vector axis = cascade::imaginary_part(r);
          const float half = cascade::length(axis);
          if (half < 0.70710678f) return r;
          const float angle = elementary::asin(std::min(1.0f, 2 * half * std::abs(r[0])));
          const Vector imaginary = axis * (elementary::sin(angle / 2) / half);
          return Quat(elementary::cos(angle / 2), imaginary[0], imaginary[1], imaginary[2]);
-       };
+       });
      }},
     {"cascade-error-sign-of-w", "large_angle", Stage::tilt,
      "takes the sign of the error from w alone, also if w is 0", "a half turn backwards",
@@ -162,11 +167,11 @@ const Fault half_turn_list[] = {
     {"cascade-sign-of-0-is-0", "large_angle", Stage::p,
      "multiplies the error by a sign of w that is 0 for 0", "a half turn", "sign of zero",
      [](FaultyLaw& law) {
-       law.attitude_unit.attitude.proportional = [](const Quat& error,
-                                                    const QuaternionGains& gains) {
-         const Vector rates = QuaternionStages::Law::proportional(error, gains);
-         return error[0] == 0 ? Vector(Vector::Zero()) : rates;
-       };
+       change_stage(law.attitude_unit.attitude.proportional,
+                    [](const auto& then, const Quat& error, const QuaternionGains& gains) {
+                      const Vector rates = then(error, gains);
+                      return error[0] == 0 ? Vector(Vector::Zero()) : rates;
+                    });
      }},
     {"cascade-heading-without-poles", "sticks", Stage::sticks,
      "computes the heading near the poles with the usual formula", "sticks at a pitch of 90 deg",

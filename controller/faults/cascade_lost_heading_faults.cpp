@@ -15,23 +15,23 @@ using StepLaw = AttitudeStepStages::Law;
 // bool(YawCorrection& state, Scalar heading, Scalar unaided, Scalar dt_s, const CascadeTraits&).
 template <typename Correct>
 void change_kept_correction(FaultyLaw& law, Correct correct) {
-  law.attitude_unit.sticks.correct_yaw = [correct](YawCorrection& state, Scalar heading,
-                                                   Scalar unaided, Scalar dt_s,
-                                                   const CascadeTraits& traits) mutable {
-    return traits.keeps_lost_correction
-               ? correct(state, heading, unaided, dt_s, traits)
-               : StickLaw::correct_yaw(state, heading, unaided, dt_s, traits);
-  };
+  change_stage(law.attitude_unit.sticks.correct_yaw,
+               [correct](const auto& then, YawCorrection& state, Scalar heading, Scalar unaided,
+                         Scalar dt_s, const CascadeTraits& traits) mutable {
+                 return traits.keeps_lost_correction
+                            ? correct(then, state, heading, unaided, dt_s, traits)
+                            : then(state, heading, unaided, dt_s, traits);
+               });
 }
 
 // Changes the state after the step in which the heading is back. Change is
 // void(YawCorrection& now, const YawCorrection& before).
 template <typename Change>
 void change_return(FaultyLaw& law, Change change) {
-  change_kept_correction(law, [change](YawCorrection& state, Scalar heading, Scalar unaided,
-                                       Scalar dt_s, const CascadeTraits& traits) {
+  change_kept_correction(law, [change](const auto& then, YawCorrection& state, Scalar heading,
+                                       Scalar unaided, Scalar dt_s, const CascadeTraits& traits) {
     const YawCorrection before = state;
-    const bool released = StickLaw::correct_yaw(state, heading, unaided, dt_s, traits);
+    const bool released = then(state, heading, unaided, dt_s, traits);
     if (before.lost && !state.lost) change(state, before);
     return released;
   });
@@ -40,28 +40,30 @@ void change_return(FaultyLaw& law, Change change) {
 // The heading is also lost in steps without sticks.
 void lose_without_sticks(FaultyLaw& law) {
   auto lost = std::make_shared<bool>(false);
-  law.attitude_unit.step.runs = [lost](const cascade::AttitudeTopics& topics) {
-    if (!std::isfinite(topics.position.unaided_heading)) *lost = true;
-    return StepLaw::runs(topics);
-  };
-  change_kept_correction(law, [lost](YawCorrection& state, Scalar heading, Scalar unaided,
-                                     Scalar dt_s, const CascadeTraits& traits) {
+  change_stage(law.attitude_unit.step.runs,
+               [lost](const auto& then, const cascade::AttitudeTopics& topics) {
+                 if (!std::isfinite(topics.position.unaided_heading)) *lost = true;
+                 return then(topics);
+               });
+  change_kept_correction(law, [lost](const auto& then, YawCorrection& state, Scalar heading,
+                                     Scalar unaided, Scalar dt_s, const CascadeTraits& traits) {
     if (std::exchange(*lost, false)) state.lost = true;
-    return StickLaw::correct_yaw(state, heading, unaided, dt_s, traits);
+    return then(state, heading, unaided, dt_s, traits);
   });
 }
 
 // A step without sticks ends the loss of the heading.
 void find_without_sticks(FaultyLaw& law) {
   auto released = std::make_shared<bool>(false);
-  law.attitude_unit.sticks.clears_tilt = [released](bool runs, const CascadeTraits& traits) {
-    *released = true;
-    return StickLaw::clears_tilt(runs, traits);
-  };
-  change_kept_correction(law, [released](YawCorrection& state, Scalar heading, Scalar unaided,
-                                         Scalar dt_s, const CascadeTraits& traits) {
+  change_stage(law.attitude_unit.sticks.clears_tilt,
+               [released](const auto& then, bool runs, const CascadeTraits& traits) {
+                 *released = true;
+                 return then(runs, traits);
+               });
+  change_kept_correction(law, [released](const auto& then, YawCorrection& state, Scalar heading,
+                                         Scalar unaided, Scalar dt_s, const CascadeTraits& traits) {
     if (std::exchange(*released, false)) state.lost = false;
-    return StickLaw::correct_yaw(state, heading, unaided, dt_s, traits);
+    return then(state, heading, unaided, dt_s, traits);
   });
 }
 
@@ -78,10 +80,10 @@ const Fault lost_heading_list[] = {
      "keeps the lock when the unaided heading is back",
      "an unaided heading that comes back after a turn", "a missing step",
      [](FaultyLaw& law) {
-       change_kept_correction(law, [](YawCorrection& state, Scalar heading, Scalar unaided,
-                                      Scalar dt_s, const CascadeTraits& traits) {
+       change_kept_correction(law, [](const auto& then, YawCorrection& state, Scalar heading,
+                                      Scalar unaided, Scalar dt_s, const CascadeTraits& traits) {
          const bool was_lost = state.lost;
-         return StickLaw::correct_yaw(state, heading, unaided, dt_s, traits) && !was_lost;
+         return then(state, heading, unaided, dt_s, traits) && !was_lost;
        });
      }},
     {"cascade-lost-heading-keeps-filter", "sticks", Stage::yaw_lock,
@@ -119,12 +121,12 @@ const Fault lost_heading_list[] = {
      "takes the unaided heading for lost before the first step with sticks",
      "a start in stabilized mode with an unaided heading", "initial state",
      [](FaultyLaw& law) {
-       change_kept_correction(
-           law, [is_first = true](YawCorrection& state, Scalar heading, Scalar unaided, Scalar dt_s,
-                                  const CascadeTraits& traits) mutable {
-             if (std::exchange(is_first, false)) state.lost = true;
-             return StickLaw::correct_yaw(state, heading, unaided, dt_s, traits);
-           });
+       change_kept_correction(law, [is_first = true](const auto& then, YawCorrection& state,
+                                                     Scalar heading, Scalar unaided, Scalar dt_s,
+                                                     const CascadeTraits& traits) mutable {
+         if (std::exchange(is_first, false)) state.lost = true;
+         return then(state, heading, unaided, dt_s, traits);
+       });
      }},
     {"cascade-lost-heading-in-all-modes", "sticks", Stage::yaw_lock,
      "loses the unaided heading also in steps without sticks",

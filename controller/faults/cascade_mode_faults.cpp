@@ -11,29 +11,29 @@ using StepLaw = AttitudeStepStages::Law;
 // Decides from changed topics whether the unit runs. Change is void(Topics&).
 template <typename Change>
 void change_runs(FaultyLaw& law, Change change) {
-  law.attitude_unit.step.runs = [change](Topics topics) {
+  change_stage(law.attitude_unit.step.runs, [change](const auto& then, Topics topics) {
     change(topics);
-    return StepLaw::runs(topics);
-  };
+    return then(topics);
+  });
 }
 
 template <typename Change>
 void change_follows_sticks(FaultyLaw& law, Change change) {
-  law.attitude_unit.step.follows_sticks = [change](Topics topics) {
+  change_stage(law.attitude_unit.step.follows_sticks, [change](const auto& then, Topics topics) {
     change(topics);
-    return StepLaw::follows_sticks(topics);
-  };
+    return then(topics);
+  });
 }
 
 // Changes what decides whether autotune is active. Change is void(Topics&, std::uint64_t& now_us).
 template <typename Change>
 void change_autotune(FaultyLaw& law, Change change) {
-  law.attitude_unit.step.autotuned = [change](const Vector& rates, Topics topics,
-                                              std::uint64_t now_us,
-                                              const CascadeTraits& traits) mutable {
-    change(topics, now_us);
-    return StepLaw::autotuned(rates, topics, now_us, traits);
-  };
+  change_stage(law.attitude_unit.step.autotuned,
+               [change](const auto& then, const Vector& rates, Topics topics, std::uint64_t now_us,
+                        const CascadeTraits& traits) mutable {
+                 change(topics, now_us);
+                 return then(rates, topics, now_us, traits);
+               });
 }
 
 // Another state, which is in the list already, takes its place.
@@ -216,21 +216,23 @@ const Fault mode_list[] = {
      "takes the rates of autotune instead of adding them", "autotune with an attitude error",
      "a missing sum",
      [](FaultyLaw& law) {
-       law.attitude_unit.step.autotuned = [](const Vector& rates, const Topics& topics,
-                                             std::uint64_t now_us, const CascadeTraits& traits) {
-         const Vector zero = Vector::Zero();
-         const Vector added = StepLaw::autotuned(zero, topics, now_us, traits);
-         return added == zero ? rates : added;
-       };
+       change_stage(law.attitude_unit.step.autotuned,
+                    [](const auto& then, const Vector& rates, const Topics& topics,
+                       std::uint64_t now_us, const CascadeTraits& traits) {
+                      const Vector zero = Vector::Zero();
+                      const Vector added = then(zero, topics, now_us, traits);
+                      return added == zero ? rates : added;
+                    });
      }},
     {"cascade-autotune-in-any-state", "modes", Stage::autotune,
      "adds the rates of autotune in every state", "autotune in state 5", "a missing condition",
      [](FaultyLaw& law) {
-       law.attitude_unit.step.autotuned = [](const Vector& rates, Topics topics,
-                                             std::uint64_t now_us, const CascadeTraits& traits) {
-         topics.autotune.state = traits.autotune_states.front();
-         return StepLaw::autotuned(rates, topics, now_us, traits);
-       };
+       change_stage(law.attitude_unit.step.autotuned,
+                    [](const auto& then, const Vector& rates, Topics topics, std::uint64_t now_us,
+                       const CascadeTraits& traits) {
+                      topics.autotune.state = traits.autotune_states.front();
+                      return then(rates, topics, now_us, traits);
+                    });
      }},
     {"cascade-follows-v1.16.0-autotune",
      "modes",

@@ -39,19 +39,21 @@ void measure_by_samples(FaultyLaw& law) {
 // Moves the model by dt of the step that takes the setpoint.
 void measure_by_step(FaultyLaw& law) {
   auto dt_s = std::make_shared<Scalar>(0.0f);
-  law.attitude_unit.step.step_time = [dt_s](std::uint64_t now_us, std::uint64_t last_us) {
-    return *dt_s = AttitudeStepStages::Law::step_time(now_us, last_us);
-  };
+  change_stage(law.attitude_unit.step.step_time,
+               [dt_s](const auto& then, std::uint64_t now_us, std::uint64_t last_us) {
+                 return *dt_s = then(now_us, last_us);
+               });
   model_of(law).elapsed = [dt_s](std::uint64_t) { return *dt_s; };
 }
 
 // Counts the time from the last setpoint that came, although it was dropped.
 void measure_from_dropped(FaultyLaw& law) {
   auto times_us = std::make_shared<std::pair<std::uint64_t, std::uint64_t>>();  // last, this
-  law.attitude_unit.step.is_newer = [times_us](std::uint64_t setpoint_us, std::uint64_t last_us) {
-    *times_us = {times_us->second, setpoint_us};
-    return AttitudeStepStages::Law::is_newer(setpoint_us, last_us);
-  };
+  change_stage(law.attitude_unit.step.is_newer,
+               [times_us](const auto& then, std::uint64_t setpoint_us, std::uint64_t last_us) {
+                 *times_us = {times_us->second, setpoint_us};
+                 return then(setpoint_us, last_us);
+               });
   model_of(law).elapsed = [times_us](std::uint64_t) {
     return ModelLaw::elapsed(times_us->second - times_us->first);
   };

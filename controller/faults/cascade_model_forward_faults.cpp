@@ -50,20 +50,21 @@ void change_model_gains(FaultyLaw& law, Change change) {
 // The law turns the command first, then the rate of the model.
 void add_command_unturned(FaultyLaw& law) {
   auto& in_body = model_of(law).in_body;
-  in_body = [then = in_body, is_command = false](const Quat& q_WB, const Quat& q_WR,
-                                                 V rate) mutable {
+  change_stage(in_body, [is_command = false](const auto& then, const Quat& q_WB, const Quat& q_WR,
+                                             V rate) mutable {
     is_command = !is_command;
     return is_command ? rate : then(q_WB, q_WR, rate);
-  };
+  });
 }
 
 // Takes the world's z axis in the frame of the setpoint.
 void command_in_setpoint(FaultyLaw& law) {
   auto q_WD = std::make_shared<Quat>(cascade::identity<Scalar>());
   auto& setpoint = law.attitude_unit.attitude.setpoint;
-  setpoint = [q_WD, then = setpoint](const Quat& given) { return *q_WD = then(given); };
+  change_stage(setpoint,
+               [q_WD](const auto& then, const Quat& given) { return *q_WD = then(given); });
   auto& world_z = model_of(law).world_z;
-  world_z = [q_WD, then = world_z](const Quat&) { return then(*q_WD); };
+  change_stage(world_z, [q_WD](const auto& then, const Quat&) { return then(*q_WD); });
 }
 
 // Adds the commanded yaw rate about the world's z axis in the body, as v1.17 does. The command of

@@ -23,16 +23,18 @@ void follow_setpoint(FaultyLaw& law) {
   const auto q_WD = watch_setpoint(law);
   auto& stages = law.attitude_unit.attitude;
   const auto has_model = watch_for_model(law);
-  stages.adapted = [q_WD](const Quat& delta, const Quat& q_WR) {
-    *q_WD = AttitudeLaw::adapted(delta, *q_WD);
-    return AttitudeLaw::adapted(delta, q_WR);
-  };
-  stages.tilt_rotation = [q_WD, has_model](const Quat& q_WB, const Quat& q_WR) {
-    return AttitudeLaw::tilt_rotation(q_WB, *has_model ? *q_WD : q_WR);
-  };
-  stages.remaining_yaw = [q_WD, has_model](const Quat& tilted, const Quat& q_WR) {
-    return AttitudeLaw::remaining_yaw(tilted, *has_model ? *q_WD : q_WR);
-  };
+  change_stage(stages.adapted, [q_WD](const auto& then, const Quat& delta, const Quat& q_WR) {
+    *q_WD = then(delta, *q_WD);
+    return then(delta, q_WR);
+  });
+  change_stage(stages.tilt_rotation,
+               [q_WD, has_model](const auto& then, const Quat& q_WB, const Quat& q_WR) {
+                 return then(q_WB, *has_model ? *q_WD : q_WR);
+               });
+  change_stage(stages.remaining_yaw,
+               [q_WD, has_model](const auto& then, const Quat& tilted, const Quat& q_WR) {
+                 return then(tilted, *has_model ? *q_WD : q_WR);
+               });
 }
 
 // From a reset of the estimator to the next setpoint, the rates of the model are changed. Change is
@@ -40,25 +42,26 @@ void follow_setpoint(FaultyLaw& law) {
 template <typename Change>
 void change_rates_at_reset(FaultyLaw& law, Change change) {
   auto delta = std::make_shared<std::optional<Quat>>();
-  law.attitude_unit.attitude.adapted = [delta](const Quat& turn, const Quat& q_WR) {
-    *delta = *delta ? product(turn, **delta) : turn;
-    return AttitudeLaw::adapted(turn, q_WR);
-  };
+  change_stage(law.attitude_unit.attitude.adapted,
+               [delta](const auto& then, const Quat& turn, const Quat& q_WR) {
+                 *delta = *delta ? product(turn, **delta) : turn;
+                 return then(turn, q_WR);
+               });
   const auto changed = [delta, change](V rate) {
     return *delta ? Vector(change(**delta, rate)) : rate;
   };
   ModelStages& model = model_of(law);
-  model.in_body = [changed](const Quat& q_WB, const Quat& q_WR, V rate) {
-    return ModelLaw::in_body(q_WB, q_WR, changed(rate));
-  };
-  model.turn = [changed](V error, V rate, V command, Scalar elapsed_s, const Decay& left) {
-    return ModelLaw::turn(error, changed(rate), command, elapsed_s, left);
-  };
-  model.rate = [delta, changed](V error, V rate, const Decay& left) {
+  change_stage(model.in_body, [changed](const auto& then, const Quat& q_WB, const Quat& q_WR,
+                                        V rate) { return then(q_WB, q_WR, changed(rate)); });
+  change_stage(model.turn, [changed](const auto& then, V error, V rate, V command, Scalar elapsed_s,
+                                     const Decay& left) {
+    return then(error, changed(rate), command, elapsed_s, left);
+  });
+  change_stage(model.rate, [delta, changed](const auto& then, V error, V rate, const Decay& left) {
     const Vector old = changed(rate);
     delta->reset();
-    return ModelLaw::rate(error, old, left);
-  };
+    return then(error, old, left);
+  });
 }
 
 // If the value is set to true, the next setpoint places the model, as if it were the first one.
@@ -71,72 +74,77 @@ std::shared_ptr<bool> make_restart(FaultyLaw& law) {
 }
 
 void restart_at_parameters(FaultyLaw& law) {
-  law.attitude_unit.step.gains = [restarts = make_restart(law)](const P& parameters) {
-    *restarts = true;
-    return StepLaw::gains(parameters);
-  };
+  change_stage(law.attitude_unit.step.gains,
+               [restarts = make_restart(law)](const auto& then, const P& parameters) {
+                 *restarts = true;
+                 return then(parameters);
+               });
 }
 
 void restart_after_pause(FaultyLaw& law) {
-  law.attitude_unit.step.is_newer = [restarts = make_restart(law)](std::uint64_t setpoint_us,
-                                                                   std::uint64_t last_us) {
-    const bool newer = StepLaw::is_newer(setpoint_us, last_us);
-    *restarts = newer && setpoint_us - last_us > 500'000;
-    return newer;
-  };
+  change_stage(law.attitude_unit.step.is_newer,
+               [restarts = make_restart(law)](const auto& then, std::uint64_t setpoint_us,
+                                              std::uint64_t last_us) {
+                 const bool newer = then(setpoint_us, last_us);
+                 *restarts = newer && setpoint_us - last_us > 500'000;
+                 return newer;
+               });
 }
 
 void restart_in_other_modes(FaultyLaw& law) {
-  law.attitude_unit.step.runs = [restarts =
-                                     make_restart(law)](const cascade::AttitudeTopics& topics) {
-    const bool runs = StepLaw::runs(topics);
-    if (!runs) *restarts = true;
-    return runs;
-  };
+  change_stage(
+      law.attitude_unit.step.runs,
+      [restarts = make_restart(law)](const auto& then, const cascade::AttitudeTopics& topics) {
+        const bool runs = then(topics);
+        if (!runs) *restarts = true;
+        return runs;
+      });
 }
 
 void restart_with_sticks(FaultyLaw& law) {
-  law.attitude_unit.step.follows_sticks =
-      [restarts = make_restart(law)](const cascade::AttitudeTopics& topics) {
-        *restarts = StepLaw::follows_sticks(topics);
+  change_stage(
+      law.attitude_unit.step.follows_sticks,
+      [restarts = make_restart(law)](const auto& then, const cascade::AttitudeTopics& topics) {
+        *restarts = then(topics);
         return *restarts;
-      };
+      });
 }
 
 void restart_at_reset(FaultyLaw& law) {
-  law.attitude_unit.attitude.adapted = [restarts = make_restart(law)](const Quat& delta,
-                                                                      const Quat& q_WR) {
-    *restarts = true;
-    return AttitudeLaw::adapted(delta, q_WR);
-  };
+  change_stage(
+      law.attitude_unit.attitude.adapted,
+      [restarts = make_restart(law)](const auto& then, const Quat& delta, const Quat& q_WR) {
+        *restarts = true;
+        return then(delta, q_WR);
+      });
 }
 
 // A model that is NaN is placed on the next setpoint.
 void forget_nan(FaultyLaw& law) {
   const auto q_WD = watch_setpoint(law);
   ModelStages& model = model_of(law);
-  model.world_z = [q_WD](const Quat& q_WR) {
-    return ModelLaw::world_z(std::isfinite(q_WR.sum()) ? q_WR : *q_WD);
-  };
-  model.rate = [](V error, V rate, const Decay& left) {
-    const Vector moved = ModelLaw::rate(error, rate, left);
+  change_stage(model.world_z, [q_WD](const auto& then, const Quat& q_WR) {
+    return then(std::isfinite(q_WR.sum()) ? q_WR : *q_WD);
+  });
+  change_stage(model.rate, [](const auto& then, V error, V rate, const Decay& left) {
+    const Vector moved = then(error, rate, left);
     return moved.allFinite() ? moved : Vector(Vector::Zero());
-  };
-  model.turned = [q_WD](const Quat& q_WR, V turn) {
-    return std::isfinite(q_WR.sum()) ? ModelLaw::turned(q_WR, turn) : *q_WD;
-  };
+  });
+  change_stage(model.turned, [q_WD](const auto& then, const Quat& q_WR, V turn) {
+    return std::isfinite(q_WR.sum()) ? then(q_WR, turn) : *q_WD;
+  });
 }
 
 // A turn that is not finite leaves the model as it is.
 void guard_turn(FaultyLaw& law) {
   ModelStages& model = model_of(law);
-  model.rate = [](V error, V rate, const Decay& left) {
-    const Vector moved = ModelLaw::rate(error, rate, left);
+  change_stage(model.rate, [](const auto& then, V error, V rate, const Decay& left) {
+    const Vector moved = then(error, rate, left);
     return moved.allFinite() ? moved : rate;
-  };
-  model.turned = [](const Quat& q_WR, V turn) {
-    return turn.allFinite() ? ModelLaw::turned(q_WR, turn) : q_WR;
-  };
+  });
+  change_stage(model.turned, [](const auto& then, const Quat& q_WR, V turn) {
+    return turn.allFinite() ? then(q_WR, turn) : q_WR;
+  });
 }
 
 void delay_thrust(FaultyLaw& law) {

@@ -19,19 +19,19 @@ void keep_first_yaw_rate(FaultyLaw& law) {
   const auto target = watch_setpoint(law);
   auto first = std::make_shared<bool>(false);
   ModelStages& model = model_of(law);
-  model.is_first = [first](std::uint64_t last_us) {
-    *first = ModelLaw::is_first(last_us);
+  change_stage(model.is_first, [first](const auto& then, std::uint64_t last_us) {
+    *first = then(last_us);
     return false;
-  };
-  model.elapsed = [first](std::uint64_t elapsed_us) {
-    return *first ? 0.0f : ModelLaw::elapsed(elapsed_us);
-  };
-  model.world_z = [first, target](const Quat& q_WR) {
-    return ModelLaw::world_z(*first ? *target : q_WR);
-  };
-  model.turned = [first, target](const Quat& q_WR, V turn) {
-    return *first ? *target : ModelLaw::turned(q_WR, turn);
-  };
+  });
+  change_stage(model.elapsed, [first](const auto& then, std::uint64_t elapsed_us) {
+    return *first ? 0.0f : then(elapsed_us);
+  });
+  change_stage(model.world_z, [first, target](const auto& then, const Quat& q_WR) {
+    return then(*first ? *target : q_WR);
+  });
+  change_stage(model.turned, [first, target](const auto& then, const Quat& q_WR, V turn) {
+    return *first ? *target : then(q_WR, turn);
+  });
 }
 
 // Removes the part of the rate about z if Test, bool(Scalar yaw_rate), is true.

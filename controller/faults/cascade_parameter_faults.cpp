@@ -23,10 +23,10 @@ void keep_at(FaultyLaw& law, float value) {
 template <typename Unit>
 std::shared_ptr<const P> defaults_of(Unit& unit, cascade::ParameterTable table) {
   auto defaults = std::make_shared<P>(default_parameters(table, cascade::Profile::px4_v1_16_0));
-  unit.step.traits = [defaults, table, then = unit.step.traits](cascade::Profile profile) {
+  change_stage(unit.step.traits, [defaults, table](const auto& then, cascade::Profile profile) {
     *defaults = default_parameters(table, profile);
     return then(profile);
-  };
+  });
   return defaults;
 }
 
@@ -87,8 +87,8 @@ void read_while_disarmed(FaultyLaw& law) {
 // The same for the numbers that are computed from parameters. The others are used as they are.
 void compute_while_disarmed(FaultyLaw& law) {
   auto& gains = law.rate_unit.step.gains;
-  gains = [was_armed = watch_armed(law), then = gains,
-           old = std::optional<RateUnitGains>{}](const P& p) mutable {
+  change_stage(gains, [was_armed = watch_armed(law), old = std::optional<RateUnitGains>{}](
+                          const auto& then, const P& p) mutable {
     RateUnitGains next = then(p);
     if (*was_armed && old) {
       const Vector integral_max = next.rate.integral_max;
@@ -99,7 +99,7 @@ void compute_while_disarmed(FaultyLaw& law) {
     }
     old = next;
     return next;
-  };
+  });
 }
 
 template <typename Unit>

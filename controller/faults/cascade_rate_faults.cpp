@@ -14,11 +14,11 @@ using RateLaw = TorqueStages::Law;
 // Changes the terms of the torque before they are added. Change is void(p, i, d, ff).
 template <typename Change>
 void change_terms(FaultyLaw& law, Change change) {
-  law.rate_unit.rate.torque = [change, then = law.rate_unit.rate.torque](Vector p, Vector i,
-                                                                         Vector d, Vector ff) {
-    change(p, i, d, ff);
-    return then(p, i, d, ff);
-  };
+  change_stage(law.rate_unit.rate.torque,
+               [change](const auto& then, Vector p, Vector i, Vector d, Vector ff) {
+                 change(p, i, d, ff);
+                 return then(p, i, d, ff);
+               });
 }
 
 template <typename Change>
@@ -40,30 +40,32 @@ auto watch_change(FaultyLaw& law, Value value) {
     float dt_s = 0.02f;
   };
   auto seen = std::make_shared<Seen>();
-  law.rate_unit.step.step_time = [seen](std::uint64_t now_us, std::uint64_t last_us) {
-    return seen->dt_s = RateStepStages::Law::step_time(now_us, last_us);
-  };
-  law.rate_unit.rate.error = [seen, value](const Vector& rates_sp, const Vector& rates) {
-    seen->last = std::exchange(seen->now, value(rates_sp, rates));
-    return RateLaw::error(rates_sp, rates);
-  };
+  change_stage(law.rate_unit.step.step_time,
+               [seen](const auto& then, std::uint64_t now_us, std::uint64_t last_us) {
+                 return seen->dt_s = then(now_us, last_us);
+               });
+  change_stage(law.rate_unit.rate.error,
+               [seen, value](const auto& then, const Vector& rates_sp, const Vector& rates) {
+                 seen->last = std::exchange(seen->now, value(rates_sp, rates));
+                 return then(rates_sp, rates);
+               });
   return seen;
 }
 
 // D acts on the change of `value` since the previous step.
 template <typename Value>
 void differentiate(FaultyLaw& law, Value value) {
-  law.rate_unit.rate.derivative = [seen = watch_change(law, value)](V, const TorqueGains& gains) {
-    return RateLaw::derivative(Vector((seen->now - seen->last) / seen->dt_s), gains);
-  };
+  change_stage(law.rate_unit.rate.derivative,
+               [seen = watch_change(law, value)](const auto& then, V, const TorqueGains& gains) {
+                 return then(Vector((seen->now - seen->last) / seen->dt_s), gains);
+               });
 }
 
 // The integral grows as if each step took `dt_s`.
 void integrate_with(FaultyLaw& law, float dt_s) {
-  law.rate_unit.rate.integrated = [dt_s](Scalar integral, Scalar factor, Scalar gain, Scalar error,
-                                         Scalar) {
-    return RateLaw::integrated(integral, factor, gain, error, dt_s);
-  };
+  change_stage(law.rate_unit.rate.integrated,
+               [dt_s](const auto& then, Scalar integral, Scalar factor, Scalar gain, Scalar error,
+                      Scalar) { return then(integral, factor, gain, error, dt_s); });
 }
 
 template <typename Factor>
@@ -102,19 +104,21 @@ const Fault torque_list[] = {
      "any acceleration", "a missing factor",
      [](FaultyLaw& law) {
        const auto rates = [](V, V now) { return Vector(now); };
-       law.rate_unit.rate.derivative = [seen = watch_change(law, rates)](V,
-                                                                         const TorqueGains& gains) {
-         return RateLaw::derivative(Vector(seen->now - seen->last), gains);
-       };
+       change_stage(
+           law.rate_unit.rate.derivative,
+           [seen = watch_change(law, rates)](const auto& then, V, const TorqueGains& gains) {
+             return then(Vector(seen->now - seen->last), gains);
+           });
      }},
     {"cascade-d-filtered", "rates", Stage::d, "low-passes D", "an acceleration that changes",
      "a helpful extra",
      [](FaultyLaw& law) {
-       law.rate_unit.rate.derivative = [filtered = Vector(Vector::Zero())](
-                                           V acceleration, const TorqueGains& gains) mutable {
-         filtered += 0.5f * (RateLaw::derivative(acceleration, gains) - filtered);
-         return filtered;
-       };
+       change_stage(law.rate_unit.rate.derivative,
+                    [filtered = Vector(Vector::Zero())](const auto& then, V acceleration,
+                                                        const TorqueGains& gains) mutable {
+                      filtered += 0.5f * (then(acceleration, gains) - filtered);
+                      return filtered;
+                    });
      }},
     {"cascade-i-without-dt", "rates", Stage::i, "does not multiply by dt", "an error that lasts",
      "a missing factor", [](FaultyLaw& law) { integrate_with(law, 1); }},
@@ -165,22 +169,22 @@ const Fault torque_list[] = {
      "a feed-forward gain and a rate", "another signal",
      [](FaultyLaw& law) {
        auto error = std::make_shared<Vector>(Vector::Zero());
-       law.rate_unit.rate.error = [error](V sp, V rates) {
-         return *error = RateLaw::error(sp, rates);
-       };
-       law.rate_unit.rate.feed_forward = [error](V, const TorqueGains& gains) {
-         return RateLaw::feed_forward(*error, gains);
-       };
+       change_stage(law.rate_unit.rate.error,
+                    [error](const auto& then, V sp, V rates) { return *error = then(sp, rates); });
+       change_stage(
+           law.rate_unit.rate.feed_forward,
+           [error](const auto& then, V, const TorqueGains& gains) { return then(*error, gains); });
      }},
     {"cascade-ff-of-change", "rates", Stage::ff,
      "feeds the change of the setpoint forward, as v1.3.4 does", "a feed-forward gain",
      "another version of the law",
      [](FaultyLaw& law) {
        const auto setpoint = [](V sp, V) { return Vector(sp); };
-       law.rate_unit.rate.feed_forward = [seen = watch_change(law, setpoint)](
-                                             V, const TorqueGains& gains) {
-         return RateLaw::feed_forward(Vector((seen->now - seen->last) / seen->dt_s), gains);
-       };
+       change_stage(
+           law.rate_unit.rate.feed_forward,
+           [seen = watch_change(law, setpoint)](const auto& then, V, const TorqueGains& gains) {
+             return then(Vector((seen->now - seen->last) / seen->dt_s), gains);
+           });
      }},
     {"cascade-k-on-p-only", "rates", Stage::parameters, "multiplies P alone by K",
      "a K other than 1", "a missing factor",
@@ -245,9 +249,9 @@ const Fault torque_list[] = {
     {"cascade-torque-clamped", "rates", Stage::output, "clamps the torque to -1 .. 1",
      "a large error", "a helpful extra",
      [](FaultyLaw& law) {
-       law.rate_unit.rate.torque = [then = law.rate_unit.rate.torque](V p, V i, V d, V ff) {
+       change_stage(law.rate_unit.rate.torque, [](const auto& then, V p, V i, V d, V ff) {
          return Vector(then(p, i, d, ff).cwiseMax(-1.0f).cwiseMin(1.0f));
-       };
+       });
      }},
     {"cascade-rate-thrust-z-only", "rates", Stage::output,
      "publishes the z component of the thrust only", "a setpoint with thrust along x or y",

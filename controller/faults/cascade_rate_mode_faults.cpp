@@ -15,38 +15,39 @@ using AcroSetpoint = RateStepStages::Setpoint;
 // Changes the sticks and gains of acro before use. Change is void(AcroSticks&, AcroGains&).
 template <typename Change>
 void change_acro_input(FaultyLaw& law, Change change) {
-  law.rate_unit.step.acro = [change, then = law.rate_unit.step.acro](AcroSticks sticks,
-                                                                     AcroGains gains) {
-    change(sticks, gains);
-    return then(sticks, gains);
-  };
+  change_stage(law.rate_unit.step.acro,
+               [change](const auto& then, AcroSticks sticks, AcroGains gains) {
+                 change(sticks, gains);
+                 return then(sticks, gains);
+               });
 }
 
 // Changes the setpoint that acro computes. Change is void(AcroSetpoint&, const AcroSticks&).
 template <typename Change>
 void change_acro(FaultyLaw& law, Change change) {
-  law.rate_unit.step.acro = [change, then = law.rate_unit.step.acro](const AcroSticks& sticks,
-                                                                     const AcroGains& gains) {
-    AcroSetpoint setpoint = then(sticks, gains);
-    change(setpoint, sticks);
-    return setpoint;
-  };
+  change_stage(law.rate_unit.step.acro,
+               [change](const auto& then, const AcroSticks& sticks, const AcroGains& gains) {
+                 AcroSetpoint setpoint = then(sticks, gains);
+                 change(setpoint, sticks);
+                 return setpoint;
+               });
 }
 
 template <typename Change>
 void change_is_acro(FaultyLaw& law, Change change) {
-  law.rate_unit.step.is_acro = [change](cascade::RateTopics topics) {
+  change_stage(law.rate_unit.step.is_acro, [change](const auto& then, cascade::RateTopics topics) {
     change(topics);
-    return RateStepLaw::is_acro(topics);
-  };
+    return then(topics);
+  });
 }
 
 // A sample of `topic` is lost if the step in which it arrives does not latch it.
 template <std::uint32_t topic>
 void lose_pending(FaultyLaw& law) {
-  law.rate_unit.step.pending = [](std::uint32_t before, std::uint32_t updated) {
-    return RateStepLaw::pending(before & ~topic, updated);
-  };
+  change_stage(law.rate_unit.step.pending,
+               [](const auto& then, std::uint32_t before, std::uint32_t updated) {
+                 return then(before & ~topic, updated);
+               });
 }
 
 template <std::uint32_t topic>
@@ -57,16 +58,16 @@ void latch_rate_topic_always(FaultyLaw& law) {
 // Scales the rates. Scale is Scalar(stick, superexpo), both within their limits.
 template <typename Scale>
 void scale_acro(FaultyLaw& law, Scale scale) {
-  law.rate_unit.step.acro = [scale, then = law.rate_unit.step.acro](const AcroSticks& sticks,
-                                                                    const AcroGains& gains) {
-    AcroSetpoint setpoint = then(sticks, gains);
-    const float stick[] = {sticks.roll, -sticks.pitch, sticks.yaw};
-    for (int i = 0; i < 3; ++i) {
-      setpoint.rates_B[i] *= scale(cascade::clamp(stick[i], -1.0f, 1.0f),
-                                   cascade::clamp(gains.superexpo[i], 0.0f, 0.99f));
-    }
-    return setpoint;
-  };
+  change_stage(law.rate_unit.step.acro,
+               [scale](const auto& then, const AcroSticks& sticks, const AcroGains& gains) {
+                 AcroSetpoint setpoint = then(sticks, gains);
+                 const float stick[] = {sticks.roll, -sticks.pitch, sticks.yaw};
+                 for (int i = 0; i < 3; ++i) {
+                   setpoint.rates_B[i] *= scale(cascade::clamp(stick[i], -1.0f, 1.0f),
+                                                cascade::clamp(gains.superexpo[i], 0.0f, 0.99f));
+                 }
+                 return setpoint;
+               });
 }
 
 const Fault acro_list[] = {
@@ -132,18 +133,19 @@ const Fault acro_list[] = {
     {"cascade-acro-expo-without-x", "acro", Stage::sticks, "squares the stick instead of cubing it",
      "an expo and a stick at half", "another curve",
      [](FaultyLaw& law) {
-       law.rate_unit.step.acro = [](const AcroSticks& sticks, const AcroGains& gains) {
-         AcroGains plain = gains;
-         plain.expo.setZero();
-         AcroSetpoint setpoint = RateStepLaw::acro(sticks, plain);
-         const float stick[] = {sticks.roll, sticks.pitch, sticks.yaw};
-         for (int i = 0; i < 3; ++i) {
-           const float x = std::abs(cascade::clamp(stick[i], -1.0f, 1.0f));
-           const float share = cascade::clamp(gains.expo[i], 0.0f, 1.0f);
-           setpoint.rates_B[i] *= (1 - share) + share * x;
-         }
-         return setpoint;
-       };
+       change_stage(law.rate_unit.step.acro,
+                    [](const auto& then, const AcroSticks& sticks, const AcroGains& gains) {
+                      AcroGains plain = gains;
+                      plain.expo.setZero();
+                      AcroSetpoint setpoint = then(sticks, plain);
+                      const float stick[] = {sticks.roll, sticks.pitch, sticks.yaw};
+                      for (int i = 0; i < 3; ++i) {
+                        const float x = std::abs(cascade::clamp(stick[i], -1.0f, 1.0f));
+                        const float share = cascade::clamp(gains.expo[i], 0.0f, 1.0f);
+                        setpoint.rates_B[i] *= (1 - share) + share * x;
+                      }
+                      return setpoint;
+                    });
      }},
     {"cascade-acro-thrust-from-0", "acro", Stage::throttle, "takes the throttle for 0 .. 1",
      "throttle 0", "another range",
@@ -247,11 +249,11 @@ const Fault acro_list[] = {
      "an error while disarmed", "a helpful extra",
      [](FaultyLaw& law) {
        auto armed = std::make_shared<bool>(false);
-       law.rate_unit.step.resets_integral =
-           [armed, then = law.rate_unit.step.resets_integral](const cascade::RateTopics& topics) {
-             *armed = topics.mode.flag_armed != 0;
-             return then(topics);
-           };
+       change_stage(law.rate_unit.step.resets_integral,
+                    [armed](const auto& then, const cascade::RateTopics& topics) {
+                      *armed = topics.mode.flag_armed != 0;
+                      return then(topics);
+                    });
        also_after(law.rate_unit, [armed](const RateIn&, RateOut& out) {
          if (*armed) return;
          for (float& torque : out.vehicle_torque_setpoint.xyz) torque = 0;

@@ -27,10 +27,11 @@ using AttitudeTopic = decltype(AttitudeIn::vehicle_attitude);
 // setpoint, 1 for the filtered error of the heading, 2 for the reference of the yaw correction.
 template <int which>
 void keep_angle(FaultyLaw& law) {
-  law.attitude_unit.sticks.turned = [count = 0](Scalar angle, Scalar turn) mutable {
-    const int index = count++ % 3;
-    return StickStages::Law::turned(angle, index == which ? 0.0f : turn);
-  };
+  change_stage(law.attitude_unit.sticks.turned,
+               [count = 0](const auto& then, Scalar angle, Scalar turn) mutable {
+                 const int index = count++ % 3;
+                 return then(angle, index == which ? 0.0f : turn);
+               });
 }
 
 const Fault reset_list[] = {
@@ -156,9 +157,10 @@ const Fault reset_list[] = {
      "a reset that passes south, with an unaided heading",
      "a missing wrap",
      [](FaultyLaw& law) {
-       law.attitude_unit.sticks.turned = [count = 0](Scalar angle, Scalar turn) mutable {
-         return count++ % 3 == 0 ? StickStages::Law::turned(angle, turn) : angle + turn;
-       };
+       change_stage(law.attitude_unit.sticks.turned,
+                    [count = 0](const auto& then, Scalar angle, Scalar turn) mutable {
+                      return count++ % 3 == 0 ? then(angle, turn) : angle + turn;
+                    });
      },
      {},
      from_v1_16_0},
@@ -196,10 +198,11 @@ const Fault reset_list[] = {
      "an estimate that is not valid",
      "a missing condition",
      [](FaultyLaw& law) {
-       law.attitude_unit.step.hover_estimate = [](HoverSample sample, const StickGains& gains) {
-         sample.valid = 1;
-         return StepLaw::hover_estimate(sample, gains);
-       };
+       change_stage(law.attitude_unit.step.hover_estimate,
+                    [](const auto& then, HoverSample sample, const StickGains& gains) {
+                      sample.valid = 1;
+                      return then(sample, gains);
+                    });
      },
      {},
      from_v1_16_0},
@@ -210,12 +213,12 @@ const Fault reset_list[] = {
      "an estimate that becomes invalid",
      "a missing fallback",
      [](FaultyLaw& law) {
-       law.attitude_unit.step.hover_estimate = [last = static_cast<Scalar>(NAN)](
-                                                   const HoverSample& sample,
-                                                   const StickGains& gains) mutable {
-         if (sample.valid != 0) last = StepLaw::hover_estimate(sample, gains);
-         return last;
-       };
+       change_stage(law.attitude_unit.step.hover_estimate,
+                    [last = static_cast<Scalar>(NAN)](const auto& then, const HoverSample& sample,
+                                                      const StickGains& gains) mutable {
+                      if (sample.valid != 0) last = then(sample, gains);
+                      return last;
+                    });
      },
      {},
      from_v1_16_0},

@@ -24,12 +24,12 @@ void reverse_torque(FaultyLaw& law) {
 
 template <int axis>
 void reverse_rate(FaultyLaw& law) {
-  law.attitude_unit.attitude.proportional = [then = law.attitude_unit.attitude.proportional](
-                                                const Quat& error, const QuaternionGains& gains) {
-    Vector rates = then(error, gains);
-    rates[axis] = -rates[axis];
-    return rates;
-  };
+  change_stage(law.attitude_unit.attitude.proportional,
+               [](const auto& then, const Quat& error, const QuaternionGains& gains) {
+                 Vector rates = then(error, gains);
+                 rates[axis] = -rates[axis];
+                 return rates;
+               });
 }
 
 // Changes the quaternion of the attitude, or that of the setpoint.
@@ -116,18 +116,18 @@ const Fault signal_list[] = {
     {"cascade-integral-in-12-bits", "rates", Stage::i, "holds the integral in 12 bits",
      "an error that lasts", "fixed point",
      [](FaultyLaw& law) {
-       law.rate_unit.rate.limited = [then = law.rate_unit.rate.limited](Scalar next, Scalar before,
-                                                                        Scalar max) {
-         return std::round(then(next, before, max) * 4096) / 4096;
-       };
+       change_stage(law.rate_unit.rate.limited,
+                    [](const auto& then, Scalar next, Scalar before, Scalar max) {
+                      return std::round(then(next, before, max) * 4096) / 4096;
+                    });
      }},
     {"cascade-integral-decays", "rates", Stage::i, "leaks the integral", "an error that lasts",
      "a helpful extra",
      [](FaultyLaw& law) {
-       law.rate_unit.rate.limited = [then = law.rate_unit.rate.limited](Scalar next, Scalar before,
-                                                                        Scalar max) {
-         return then(next, before, max) * 0.999f;
-       };
+       change_stage(law.rate_unit.rate.limited,
+                    [](const auto& then, Scalar next, Scalar before, Scalar max) {
+                      return then(next, before, max) * 0.999f;
+                    });
      }},
     {"cascade-gains-in-8-bits", "parameters", Stage::parameters, "holds the rate gains in 8 bits",
      "any gain", "fixed point",

@@ -15,12 +15,12 @@ void change_spooled(FaultyLaw& law, Spooled spooled) {
 
 template <typename Max>
 void change_thrust_max(FaultyLaw& law, Max max) {
-  law.attitude_unit.step.thrust_max = max;
+  change_stage(law.attitude_unit.step.thrust_max, max);
 }
 
 template <typename Min>
 void change_thrust_min(FaultyLaw& law, Min min) {
-  law.attitude_unit.step.thrust_min = min;
+  change_stage(law.attitude_unit.step.thrust_min, min);
 }
 
 using Status = StepLaw::Status;
@@ -30,16 +30,19 @@ void move_limits_with_sticks(FaultyLaw& law) {
   auto used = std::make_shared<bool>(false);
   auto& unit = law.attitude_unit;
   also_before(unit, [used](AttitudeIn&) { *used = false; });
-  unit.sticks.throttle = [used](Scalar stick, const StickGains& gains, const ThrustLimits& limits) {
+  change_stage(unit.sticks.throttle, [used](const auto& then, Scalar stick, const StickGains& gains,
+                                            const ThrustLimits& limits) {
     *used = true;
-    return StickLaw::throttle(stick, gains, limits);
-  };
-  unit.step.thrust_min = [used](Scalar before, Scalar dt, bool landed, const StickGains& gains) {
-    return *used ? StepLaw::thrust_min(before, dt, landed, gains) : before;
-  };
-  unit.step.thrust_max = [used](Scalar before, Scalar dt, bool spooled) {
-    return *used ? StepLaw::thrust_max(before, dt, spooled) : before;
-  };
+    return then(stick, gains, limits);
+  });
+  change_stage(unit.step.thrust_min, [used](const auto& then, Scalar before, Scalar dt, bool landed,
+                                            const StickGains& gains) {
+    return *used ? then(before, dt, landed, gains) : before;
+  });
+  change_stage(unit.step.thrust_max,
+               [used](const auto& then, Scalar before, Scalar dt, bool spooled) {
+                 return *used ? then(before, dt, spooled) : before;
+               });
 }
 
 // Applies the upper limit after it has moved in this step. The law applies it before.
@@ -49,34 +52,37 @@ void move_limits_before_use(FaultyLaw& law) {
   };
   auto seen = std::make_shared<Seen>();
   auto& unit = law.attitude_unit;
-  unit.step.step_time = [seen](std::uint64_t now, std::uint64_t last) {
-    return seen->dt_s = StepLaw::step_time(now, last);
-  };
-  unit.step.is_spooled = [seen](std::uint64_t now, const Status& status, Scalar spoolup_us) {
-    const bool spooled = StepLaw::is_spooled(now, status, spoolup_us);
+  change_stage(unit.step.step_time,
+               [seen](const auto& then, std::uint64_t now, std::uint64_t last) {
+                 return seen->dt_s = then(now, last);
+               });
+  change_stage(unit.step.is_spooled, [seen](const auto& then, std::uint64_t now,
+                                            const Status& status, Scalar spoolup_us) {
+    const bool spooled = then(now, status, spoolup_us);
     seen->spooled = spooled ? 1 : 0;
     return spooled;
-  };
-  unit.sticks.limited_thrust = [seen](Scalar thrust, ThrustLimits limits) {
-    limits.max = StepLaw::thrust_max(limits.max, seen->dt_s, seen->spooled != 0);
-    return StickLaw::limited_thrust(thrust, limits);
-  };
+  });
+  change_stage(unit.sticks.limited_thrust,
+               [seen](const auto& then, Scalar thrust, ThrustLimits limits) {
+                 limits.max = StepLaw::thrust_max(limits.max, seen->dt_s, seen->spooled != 0);
+                 return then(thrust, limits);
+               });
 }
 
 // The lowest thrust starts at MPC_MANTHR_MIN, not at 0.
 void start_at_lowest_thrust(FaultyLaw& law) {
   auto is_first = std::make_shared<bool>(true);
   auto& unit = law.attitude_unit;
-  unit.sticks.throttle = [is_first, then = unit.sticks.throttle](
-                             Scalar stick, const StickGains& gains, ThrustLimits limits) {
+  change_stage(unit.sticks.throttle, [is_first](const auto& then, Scalar stick,
+                                                const StickGains& gains, ThrustLimits limits) {
     if (*is_first) limits.min = gains.thrust_min;
     return then(stick, gains, limits);
-  };
-  unit.step.thrust_min = [is_first, then = unit.step.thrust_min](
-                             Scalar before, Scalar dt_s, bool landed, const StickGains& gains) {
+  });
+  change_stage(unit.step.thrust_min, [is_first](const auto& then, Scalar before, Scalar dt_s,
+                                                bool landed, const StickGains& gains) {
     const Scalar from = std::exchange(*is_first, false) ? gains.thrust_min : before;
     return then(from, dt_s, landed, gains);
-  };
+  });
 }
 
 const Fault spool_up_list[] = {
@@ -134,12 +140,13 @@ const Fault spool_up_list[] = {
      "gives full thrust at the end of the spool-up, without the ramp",
      "throttle during the ramp of 2 s", "a missing ramp",
      [](FaultyLaw& law) {
-       change_thrust_max(law, [](Scalar, Scalar, bool spooled) { return spooled ? 1.0f : 0.0f; });
+       change_thrust_max(
+           law, [](const auto&, Scalar, Scalar, bool spooled) { return spooled ? 1.0f : 0.0f; });
      }},
     {"cascade-spool-up-in-1-s", "spool_up", Stage::throttle, "raises the thrust in 1 s, not in 2 s",
      "throttle during the ramp", "a wrong factor",
      [](FaultyLaw& law) {
-       change_thrust_max(law, [](Scalar before, Scalar dt_s, bool spooled) {
+       change_thrust_max(law, [](const auto&, Scalar before, Scalar dt_s, bool spooled) {
          return spooled ? cascade::slewed(before, 1.0f, dt_s, 1.0f) : 0.0f;
        });
      }},
@@ -147,15 +154,15 @@ const Fault spool_up_list[] = {
      "lowers the thrust along the ramp after disarming", "disarming at full throttle",
      "a ramp too many",
      [](FaultyLaw& law) {
-       change_thrust_max(law, [](Scalar before, Scalar dt_s, bool spooled) {
+       change_thrust_max(law, [](const auto&, Scalar before, Scalar dt_s, bool spooled) {
          return cascade::slewed(before, 0.5f, dt_s, spooled ? 1.0f : 0.0f);
        });
      }},
     {"cascade-spool-up-once", "spool_up", Stage::throttle, "keeps the thrust limit after disarming",
      "arming for a second time", "a missing reset",
      [](FaultyLaw& law) {
-       change_thrust_max(law, [](Scalar before, Scalar dt_s, bool spooled) {
-         return spooled ? StepLaw::thrust_max(before, dt_s, true) : before;
+       change_thrust_max(law, [](const auto& then, Scalar before, Scalar dt_s, bool spooled) {
+         return spooled ? then(before, dt_s, true) : before;
        });
      }},
     {"cascade-spool-up-with-sticks-only", "spool_up", Stage::throttle,
@@ -175,26 +182,27 @@ const Fault spool_up_list[] = {
     {"cascade-min-thrust-landed", "spool_up", Stage::throttle,
      "keeps the minimum thrust on the ground", "throttle -1 while landed", "a missing case",
      [](FaultyLaw& law) {
-       change_thrust_min(law, [](Scalar before, Scalar dt_s, bool, const StickGains& gains) {
-         return StepLaw::thrust_min(before, dt_s, false, gains);
-       });
+       change_thrust_min(
+           law, [](const auto& then, Scalar before, Scalar dt_s, bool, const StickGains& gains) {
+             return then(before, dt_s, false, gains);
+           });
      }},
     {"cascade-min-thrust-at-once", "spool_up", Stage::throttle,
      "has the minimum thrust at take-off at once", "throttle -1 after take-off", "a missing ramp",
      [](FaultyLaw& law) {
-       change_thrust_min(law, [](Scalar, Scalar, bool landed, const StickGains& gains) {
-         return landed ? 0.0f : gains.thrust_min;
-       });
+       change_thrust_min(law,
+                         [](const auto&, Scalar, Scalar, bool landed, const StickGains& gains) {
+                           return landed ? 0.0f : gains.thrust_min;
+                         });
      }},
     {"cascade-min-thrust-fast", "spool_up", Stage::throttle,
      "moves the lowest thrust by 0.5 in each second, not by 0.05", "takeoff at throttle -1",
      "a wrong factor",
      [](FaultyLaw& law) {
        auto& thrust_min = law.attitude_unit.step.thrust_min;
-       thrust_min = [then = thrust_min](Scalar before, Scalar dt_s, bool landed,
-                                        const StickGains& gains) {
-         return then(before, dt_s * 10, landed, gains);
-       };
+       change_stage(thrust_min,
+                    [](const auto& then, Scalar before, Scalar dt_s, bool landed,
+                       const StickGains& gains) { return then(before, dt_s * 10, landed, gains); });
      }},
     {"cascade-min-thrust-from-parameter", "spool_up", Stage::throttle,
      "starts the lowest thrust at MPC_MANTHR_MIN, not at 0", "throttle -1 at the start",
@@ -202,14 +210,16 @@ const Fault spool_up_list[] = {
     {"cascade-min-thrust-missing", "spool_up", Stage::throttle, "has no minimum thrust in flight",
      "throttle -1 in flight", "a missing term",
      [](FaultyLaw& law) {
-       change_thrust_min(law, [](Scalar, Scalar, bool, const StickGains&) { return 0.0f; });
+       change_thrust_min(law,
+                         [](const auto&, Scalar, Scalar, bool, const StickGains&) { return 0.0f; });
      }},
     {"cascade-min-thrust-drops", "spool_up", Stage::throttle,
      "drops the minimum thrust at touch-down at once", "throttle -1 at touch-down",
      "a missing ramp",
      [](FaultyLaw& law) {
-       change_thrust_min(law, [](Scalar before, Scalar dt_s, bool landed, const StickGains& gains) {
-         return landed ? 0.0f : StepLaw::thrust_min(before, dt_s, false, gains);
+       change_thrust_min(law, [](const auto& then, Scalar before, Scalar dt_s, bool landed,
+                                 const StickGains& gains) {
+         return landed ? 0.0f : then(before, dt_s, false, gains);
        });
      }},
     {"cascade-starts-in-flight", "spool_up", Stage::latching,

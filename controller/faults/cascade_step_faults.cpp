@@ -58,10 +58,10 @@ void reset_with_mode(FaultyLaw& law, Resets resets) {
     if (resets(in.vehicle_control_mode, before)) *waits = true;
     before = in.vehicle_control_mode;
   });
-  law.rate_unit.step.resets_integral =
-      [waits, then = law.rate_unit.step.resets_integral](const cascade::RateTopics& topics) {
-        return then(topics) || std::exchange(*waits, false);
-      };
+  change_stage(law.rate_unit.step.resets_integral,
+               [waits](const auto& then, const cascade::RateTopics& topics) {
+                 return then(topics) || std::exchange(*waits, false);
+               });
 }
 
 // Whether the newest vehicle_control_mode of the rate unit has flag_armed set.

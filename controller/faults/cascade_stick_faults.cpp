@@ -45,9 +45,10 @@ void filter_roll_only(FaultyLaw& law) {
     }
     *pitch = stick;
   });
-  law.attitude_unit.sticks.limited_tilt = [pitch](Scalar x, Scalar, const StickGains& gains) {
-    return StickStages::Law::limited_tilt(x, -*pitch * gains.tilt_max_rad, gains);
-  };
+  change_stage(law.attitude_unit.sticks.limited_tilt,
+               [pitch](const auto& then, Scalar x, Scalar, const StickGains& gains) {
+                 return then(x, -*pitch * gains.tilt_max_rad, gains);
+               });
 }
 
 template <typename Test>
@@ -63,38 +64,38 @@ void command_no_yaw_rate(FaultyLaw& law) {
   };
   auto seen = std::make_shared<Seen>();
   auto& step_time = law.attitude_unit.step.step_time;
-  step_time = [seen, then = step_time](std::uint64_t now_us, std::uint64_t last_us) {
+  change_stage(step_time, [seen](const auto& then, std::uint64_t now_us, std::uint64_t last_us) {
     return seen->dt_s = then(now_us, last_us);
-  };
+  });
   auto& sticks = law.attitude_unit.sticks;
-  sticks.straight_yaw_rate = [seen, then = sticks.straight_yaw_rate](Scalar stick,
-                                                                     const StickGains& gains) {
-    seen->rate = then(stick, gains);
-    return 0.0f;
-  };
-  sticks.integrated_yaw = [seen, then = sticks.integrated_yaw](Scalar yaw, Scalar, Scalar dt_s) {
+  change_stage(sticks.straight_yaw_rate,
+               [seen](const auto& then, Scalar stick, const StickGains& gains) {
+                 seen->rate = then(stick, gains);
+                 return 0.0f;
+               });
+  change_stage(sticks.integrated_yaw, [seen](const auto& then, Scalar yaw, Scalar, Scalar dt_s) {
     return then(yaw, seen->rate, dt_s);
-  };
-  sticks.shaped_yaw_rate = [seen, then = sticks.shaped_yaw_rate](Scalar stick,
-                                                                 const StickGains& gains) {
-    const CascadeTraits traits{};
-    seen->rate = seen->filter.update(gains.yaw_tau_s, seen->dt_s, then(stick, gains), traits);
-    return 0.0f;
-  };
-  sticks.locked_yaw = [seen, then = sticks.locked_yaw](Scalar yaw, Scalar, Scalar heading,
-                                                       Scalar old, Scalar correction) {
+  });
+  change_stage(
+      sticks.shaped_yaw_rate, [seen](const auto& then, Scalar stick, const StickGains& gains) {
+        const CascadeTraits traits{};
+        seen->rate = seen->filter.update(gains.yaw_tau_s, seen->dt_s, then(stick, gains), traits);
+        return 0.0f;
+      });
+  change_stage(sticks.locked_yaw, [seen](const auto& then, Scalar yaw, Scalar, Scalar heading,
+                                         Scalar old, Scalar correction) {
     return then(yaw, seen->rate, heading, old, correction);
-  };
+  });
 }
 
 // The yaw stick counts as centred while the vehicle has landed.
 void centre_yaw_stick_while_landed(FaultyLaw& law) {
   auto landed = std::make_shared<bool>(true);
   auto& runs = law.attitude_unit.step.runs;
-  runs = [landed, then = runs](const cascade::AttitudeTopics& topics) {
+  change_stage(runs, [landed](const auto& then, const cascade::AttitudeTopics& topics) {
     *landed = topics.landed;
     return then(topics);
-  };
+  });
   auto& sticks = law.attitude_unit.sticks;
   for (auto* rate : {&sticks.straight_yaw_rate, &sticks.shaped_yaw_rate}) {
     *rate = [landed, then = *rate](Scalar stick, const StickGains& gains) {

@@ -20,12 +20,14 @@ void change_throttle_gains(FaultyLaw& law, Change change) {
 template <typename Change>
 void change_stick_thrust(FaultyLaw& law, Change change) {
   auto& sticks = law.attitude_unit.sticks;
-  sticks.limited_thrust = [change](Scalar thrust, const ThrustLimits& limits) {
-    return change(StickLaw::limited_thrust(thrust, limits));
-  };
-  sticks.uncentred_throttle = [change](Scalar stick, const StickGains& gains) {
-    return change(StickLaw::uncentred_throttle(stick, gains));
-  };
+  change_stage(sticks.limited_thrust,
+               [change](const auto& then, Scalar thrust, const ThrustLimits& limits) {
+                 return change(then(thrust, limits));
+               });
+  change_stage(sticks.uncentred_throttle,
+               [change](const auto& then, Scalar stick, const StickGains& gains) {
+                 return change(then(stick, gains));
+               });
 }
 
 const Fault throttle_list[] = {
@@ -71,16 +73,16 @@ const Fault throttle_list[] = {
      "a missing parameter",
      [](FaultyLaw& law) {
        auto& sticks = law.attitude_unit.sticks;
-       sticks.throttle = [then = sticks.throttle](Scalar stick, const StickGains& gains,
-                                                  ThrustLimits limits) {
+       change_stage(sticks.throttle, [](const auto& then, Scalar stick, const StickGains& gains,
+                                        ThrustLimits limits) {
          if (gains.throttle_curve == Curve::straight) limits.min = 0;
          return then(stick, gains, limits);
-       };
-       sticks.uncentred_throttle = [then = sticks.uncentred_throttle](Scalar stick,
-                                                                      StickGains gains) {
-         if (gains.throttle_curve == Curve::straight) gains.thrust_min = 0;
-         return then(stick, gains);
-       };
+       });
+       change_stage(sticks.uncentred_throttle,
+                    [](const auto& then, Scalar stick, StickGains gains) {
+                      if (gains.throttle_curve == Curve::straight) gains.thrust_min = 0;
+                      return then(stick, gains);
+                    });
      }},
     {"cascade-hover-at-half", "sticks", Stage::throttle, "does not read MPC_THR_HOVER",
      "MPC_THR_HOVER 0.4 at throttle 0", "a missing parameter",

@@ -49,15 +49,16 @@ void measure_rate(FaultyLaw& law, Measure measured) {
 // A step that controls the rates asks whether it resets the integral.
 void keep_time_while_controlled(FaultyLaw& law) {
   auto now = std::make_shared<std::uint64_t>(0), last = std::make_shared<std::uint64_t>(0);
-  law.rate_unit.step.step_time = [now, last](std::uint64_t now_us, std::uint64_t) {
-    *now = now_us;
-    return RateStepStages::Law::step_time(now_us, *last);
-  };
+  change_stage(law.rate_unit.step.step_time,
+               [now, last](const auto& then, std::uint64_t now_us, std::uint64_t) {
+                 *now = now_us;
+                 return then(now_us, *last);
+               });
   auto& resets = law.rate_unit.step.resets_integral;
-  resets = [now, last, then = resets](const cascade::RateTopics& topics) {
+  change_stage(resets, [now, last](const auto& then, const cascade::RateTopics& topics) {
     *last = *now;
     return then(topics);
-  };
+  });
 }
 
 // The timestamps are converted to type Integer. Their difference does not wrap around.

@@ -14,7 +14,7 @@ using LowPass = RateStepStages::LowPass;
 // Replaces the low-pass. Filter is Scalar(LowPass&, torque, dt_s, gains, traits).
 template <typename Filter>
 void change_yaw_filter(FaultyLaw& law, Filter filter) {
-  law.rate_unit.step.filtered_yaw = filter;
+  change_stage(law.rate_unit.step.filtered_yaw, filter);
 }
 
 template <typename Tau>
@@ -28,13 +28,13 @@ void change_yaw_tau(FaultyLaw& law, Tau tau) {
 void restart_yaw_filter(FaultyLaw& law) {
   auto restarts = std::make_shared<bool>(false);
   auto& resets = law.rate_unit.step.resets_integral;
-  resets = [restarts, then = resets](const cascade::RateTopics& topics) {
+  change_stage(resets, [restarts](const auto& then, const cascade::RateTopics& topics) {
     return *restarts = then(topics);
-  };
-  change_yaw_filter(law, [restarts](LowPass& filter, Scalar torque, Scalar dt_s,
+  });
+  change_yaw_filter(law, [restarts](const auto& then, LowPass& filter, Scalar torque, Scalar dt_s,
                                     const RateUnitGains& gains, const CascadeTraits& traits) {
     if (*restarts) filter.state = 0;
-    return RateStepLaw::filtered_yaw(filter, torque, dt_s, gains, traits);
+    return then(filter, torque, dt_s, gains, traits);
   });
 }
 
@@ -46,10 +46,10 @@ void filter_all_axes(FaultyLaw& law) {
     CascadeTraits traits{};
   };
   auto filters = std::make_shared<Filters>();
-  change_yaw_filter(law, [filters](LowPass& filter, Scalar torque, Scalar dt_s,
+  change_yaw_filter(law, [filters](const auto& then, LowPass& filter, Scalar torque, Scalar dt_s,
                                    const RateUnitGains& gains, const CascadeTraits& traits) {
     filters->dt_s = dt_s, filters->tau_s = gains.yaw_torque_tau_s, filters->traits = traits;
-    return RateStepLaw::filtered_yaw(filter, torque, dt_s, gains, traits);
+    return then(filter, torque, dt_s, gains, traits);
   });
   also_after(law.rate_unit, [filters](const RateIn&, RateOut& out) {
     if (out.vehicle_torque_setpoint.published == 0 || filters->dt_s == 0) return;
@@ -107,15 +107,15 @@ const Fault yaw_filter_list[] = {
     {"cascade-yaw-filter-of-fixed-dt", "yaw_filter", Stage::yaw_filter, "filters with a dt of 1 ms",
      "any rate except 1 kHz", "a fixed rate",
      [](FaultyLaw& law) {
-       change_yaw_filter(law, [](LowPass& filter, Scalar torque, Scalar, const RateUnitGains& gains,
-                                 const CascadeTraits& traits) {
-         return RateStepLaw::filtered_yaw(filter, torque, 0.001f, gains, traits);
+       change_yaw_filter(law, [](const auto& then, LowPass& filter, Scalar torque, Scalar,
+                                 const RateUnitGains& gains, const CascadeTraits& traits) {
+         return then(filter, torque, 0.001f, gains, traits);
        });
      }},
     {"cascade-yaw-filter-by-exp", "yaw_filter", Stage::yaw_filter, "weighs by 1 - exp(-dt / tau)",
      "a yaw rate error", "another filter",
      [](FaultyLaw& law) {
-       change_yaw_filter(law, [](LowPass& filter, Scalar torque, Scalar dt_s,
+       change_yaw_filter(law, [](const auto&, LowPass& filter, Scalar torque, Scalar dt_s,
                                  const RateUnitGains& gains, const CascadeTraits&) {
          const float tau_s = gains.yaw_torque_tau_s;
          const float weight = tau_s > 0 ? 1 - elementary::exp(-dt_s / tau_s) : 1.0f;
@@ -127,10 +127,10 @@ const Fault yaw_filter_list[] = {
      "initial state",
      [](FaultyLaw& law) {
        change_yaw_filter(
-           law, [is_first = true](LowPass& filter, Scalar torque, Scalar dt_s,
+           law, [is_first = true](const auto& then, LowPass& filter, Scalar torque, Scalar dt_s,
                                   const RateUnitGains& gains, const CascadeTraits& traits) mutable {
              if (std::exchange(is_first, false)) filter.state = torque;
-             return RateStepLaw::filtered_yaw(filter, torque, dt_s, gains, traits);
+             return then(filter, torque, dt_s, gains, traits);
            });
      }},
     {"cascade-yaw-filter-restarts", "yaw_filter", Stage::yaw_filter,
@@ -143,10 +143,9 @@ const Fault yaw_filter_list[] = {
      "guards the yaw torque before the filter: a NaN does not stay", "one NaN of the gyro",
      "steps exchanged",
      [](FaultyLaw& law) {
-       change_yaw_filter(law, [](LowPass& filter, Scalar torque, Scalar dt_s,
+       change_yaw_filter(law, [](const auto& then, LowPass& filter, Scalar torque, Scalar dt_s,
                                  const RateUnitGains& gains, const CascadeTraits& traits) {
-         return RateStepLaw::filtered_yaw(filter, RateStepLaw::guarded(torque), dt_s, gains,
-                                          traits);
+         return then(filter, RateStepLaw::guarded(torque), dt_s, gains, traits);
        });
      }},
 };

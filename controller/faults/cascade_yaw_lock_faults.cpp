@@ -19,37 +19,37 @@ void change_shaped_rate(FaultyLaw& law, Rate rate) {
 
 template <typename Lock>
 void change_lock(FaultyLaw& law, Lock lock) {
-  law.attitude_unit.sticks.locked_yaw = lock;
+  change_stage(law.attitude_unit.sticks.locked_yaw, lock);
 }
 
 // Replaces the yaw correction. Correct is bool(state, heading, unaided, dt, traits).
 template <typename Correct>
 void change_correction(FaultyLaw& law, Correct correct) {
-  law.attitude_unit.sticks.correct_yaw = correct;
+  change_stage(law.attitude_unit.sticks.correct_yaw, correct);
 }
 
 // The lock tests the rate that the stick commands, not the filtered rate.
 void lock_by_stick(FaultyLaw& law) {
   auto commanded = std::make_shared<Scalar>(0.0f);
   auto& sticks = law.attitude_unit.sticks;
-  sticks.shaped_yaw_rate = [commanded, then = sticks.shaped_yaw_rate](Scalar stick,
-                                                                      const StickGains& gains) {
-    return *commanded = then(stick, gains);
-  };
-  sticks.locked_yaw = [commanded](Scalar yaw_sp, Scalar, Scalar heading, Scalar old, Scalar now) {
-    return StickLaw::locked_yaw(yaw_sp, *commanded, heading, old, now);
-  };
+  change_stage(sticks.shaped_yaw_rate,
+               [commanded](const auto& then, Scalar stick, const StickGains& gains) {
+                 return *commanded = then(stick, gains);
+               });
+  change_stage(sticks.locked_yaw,
+               [commanded](const auto& then, Scalar yaw_sp, Scalar, Scalar heading, Scalar old,
+                           Scalar now) { return then(yaw_sp, *commanded, heading, old, now); });
 }
 
 // The stick outside the deadzone keeps its slope of 1.
 void cut_deadzone_out(FaultyLaw& law) {
   auto& shaped = law.attitude_unit.sticks.shaped_yaw_rate;
-  shaped = [then = shaped](Scalar stick, const StickGains& gains) {
+  change_stage(shaped, [](const auto& then, Scalar stick, const StickGains& gains) {
     StickGains without_zone = gains;
     without_zone.yaw_deadzone = 0;
     const Scalar width = cascade::clamp(gains.yaw_deadzone, 0.0f, 0.99f);
     return then(cascade::deadzone(stick, gains.yaw_deadzone) * (1 - width), without_zone);
-  };
+  });
 }
 
 const Fault yaw_lock_list[] = {
@@ -103,7 +103,9 @@ const Fault yaw_lock_list[] = {
     {"cascade-yaw-never-locked", "sticks", Stage::yaw_lock, "follows the heading at all times",
      "a centred yaw stick and a heading that drifts", "a missing state",
      [](FaultyLaw& law) {
-       change_lock(law, [](Scalar, Scalar, Scalar heading, Scalar, Scalar) { return heading; });
+       change_lock(law, [](const auto&, Scalar, Scalar, Scalar heading, Scalar, Scalar) {
+         return heading;
+       });
      }},
     {"cascade-yaw-locked-by-stick", "sticks", Stage::yaw_lock,
      "locks the yaw as soon as the stick is centred, while the filtered rate decays",
@@ -112,27 +114,27 @@ const Fault yaw_lock_list[] = {
      "locks the yaw at rates below 0.1 rad/s", "a yaw stick that returns to the centre",
      "a wrong threshold",
      [](FaultyLaw& law) {
-       change_lock(law, [](Scalar yaw_sp, Scalar rate, Scalar heading, Scalar old, Scalar now) {
-         return StickLaw::locked_yaw(yaw_sp, std::abs(rate) < 0.1f ? 0.0f : rate, heading, old,
-                                     now);
+       change_lock(law, [](const auto& then, Scalar yaw_sp, Scalar rate, Scalar heading, Scalar old,
+                           Scalar now) {
+         return then(yaw_sp, std::abs(rate) < 0.1f ? 0.0f : rate, heading, old, now);
        });
      }},
     {"cascade-yaw-lock-right-only", "sticks", Stage::yaw_lock,
      "does not release the lock for a yaw to the left", "the yaw stick to the left",
      "a missing absolute value",
      [](FaultyLaw& law) {
-       change_lock(law, [](Scalar yaw_sp, Scalar rate, Scalar heading, Scalar old, Scalar now) {
-         return StickLaw::locked_yaw(yaw_sp, std::max(rate, 0.0f), heading, old, now);
-       });
+       change_lock(
+           law, [](const auto& then, Scalar yaw_sp, Scalar rate, Scalar heading, Scalar old,
+                   Scalar now) { return then(yaw_sp, std::max(rate, 0.0f), heading, old, now); });
      }},
     {"cascade-yaw-lock-of-start", "sticks", Stage::yaw_lock,
      "locks the heading in the first step, instead of turning north",
      "a start in stabilized mode at another heading", "initial state",
      [](FaultyLaw& law) {
-       change_lock(law, [is_first = true](Scalar yaw_sp, Scalar rate, Scalar heading, Scalar old,
-                                          Scalar now) mutable {
+       change_lock(law, [is_first = true](const auto& then, Scalar yaw_sp, Scalar rate,
+                                          Scalar heading, Scalar old, Scalar now) mutable {
          const bool starts = std::exchange(is_first, false) && yaw_sp == 0;
-         return StickLaw::locked_yaw(starts ? StickLaw::no_yaw() : yaw_sp, rate, heading, old, now);
+         return then(starts ? StickLaw::no_yaw() : yaw_sp, rate, heading, old, now);
        });
      }},
     {"cascade-yaw-lock-kept", "sticks", Stage::yaw_lock,
@@ -141,39 +143,35 @@ const Fault yaw_lock_list[] = {
      [](FaultyLaw& law) {
        auto last = std::make_shared<Scalar>(StickLaw::no_yaw());
        law.attitude_unit.sticks.no_yaw = [last] { return *last; };
-       change_lock(law, [last](Scalar yaw_sp, Scalar rate, Scalar heading, Scalar old, Scalar now) {
-         return *last = StickLaw::locked_yaw(yaw_sp, rate, heading, old, now);
-       });
+       change_lock(law,
+                   [last](const auto& then, Scalar yaw_sp, Scalar rate, Scalar heading, Scalar old,
+                          Scalar now) { return *last = then(yaw_sp, rate, heading, old, now); });
      }},
     {"cascade-yaw-not-corrected", "sticks", Stage::yaw_lock, "does not correct the locked yaw",
      "a heading that converges away from the unaided one", "a missing term",
      [](FaultyLaw& law) {
-       change_lock(law, [](Scalar yaw_sp, Scalar rate, Scalar heading, Scalar, Scalar) {
-         return StickLaw::locked_yaw(yaw_sp, rate, heading, 0, 0);
-       });
+       change_lock(law, [](const auto& then, Scalar yaw_sp, Scalar rate, Scalar heading, Scalar,
+                           Scalar) { return then(yaw_sp, rate, heading, 0, 0); });
      }},
     {"cascade-yaw-correction-reversed", "sticks", Stage::yaw_lock,
      "corrects the locked yaw the other way", "a heading that converges", "a sign",
      [](FaultyLaw& law) {
-       change_lock(law, [](Scalar yaw_sp, Scalar rate, Scalar heading, Scalar old, Scalar now) {
-         return StickLaw::locked_yaw(yaw_sp, rate, heading, now, old);
-       });
+       change_lock(law, [](const auto& then, Scalar yaw_sp, Scalar rate, Scalar heading, Scalar old,
+                           Scalar now) { return then(yaw_sp, rate, heading, now, old); });
      }},
     {"cascade-yaw-correction-adds-up", "sticks", Stage::yaw_lock,
      "adds the whole correction in each step, not its change", "a heading that converges",
      "a missing difference",
      [](FaultyLaw& law) {
-       change_lock(law, [](Scalar yaw_sp, Scalar rate, Scalar heading, Scalar, Scalar now) {
-         return StickLaw::locked_yaw(yaw_sp, rate, heading, 0, now);
-       });
+       change_lock(law, [](const auto& then, Scalar yaw_sp, Scalar rate, Scalar heading, Scalar,
+                           Scalar now) { return then(yaw_sp, rate, heading, 0, now); });
      }},
     {"cascade-yaw-correction-at-60-deg", "sticks", Stage::yaw_lock,
      "takes the threshold of convergence as 1 rad", "a heading that converges by 10 deg", "degrees",
      [](FaultyLaw& law) {
-       change_correction(law, [](YawCorrection& state, Scalar heading, Scalar unaided, Scalar dt_s,
-                                 const CascadeTraits& traits) {
-         if (!std::isfinite(unaided))
-           return StickLaw::correct_yaw(state, heading, unaided, dt_s, traits);
+       change_correction(law, [](const auto& then, YawCorrection& state, Scalar heading,
+                                 Scalar unaided, Scalar dt_s, const CascadeTraits& traits) {
+         if (!std::isfinite(unaided)) return then(state, heading, unaided, dt_s, traits);
          const Scalar error = cascade::wrap(heading - unaided);
          const Scalar change = cascade::wrap(error - state.error.state);
          state.error.update(1, dt_s, error, traits);
@@ -187,17 +185,17 @@ const Fault yaw_lock_list[] = {
      "filters the error of the heading with 0.1 s, not 1 s", "a heading that converges",
      "a wrong factor",
      [](FaultyLaw& law) {
-       change_correction(law, [](YawCorrection& state, Scalar heading, Scalar unaided, Scalar dt_s,
-                                 const CascadeTraits& traits) {
-         return StickLaw::correct_yaw(state, heading, unaided, 10 * dt_s, traits);
+       change_correction(law, [](const auto& then, YawCorrection& state, Scalar heading,
+                                 Scalar unaided, Scalar dt_s, const CascadeTraits& traits) {
+         return then(state, heading, unaided, 10 * dt_s, traits);
        });
      }},
     {"cascade-yaw-lock-not-released", "sticks", Stage::yaw_lock,
      "keeps the lock when the heading has converged", "the end of a convergence", "a missing step",
      [](FaultyLaw& law) {
-       change_correction(law, [](YawCorrection& state, Scalar heading, Scalar unaided, Scalar dt_s,
-                                 const CascadeTraits& traits) {
-         StickLaw::correct_yaw(state, heading, unaided, dt_s, traits);
+       change_correction(law, [](const auto& then, YawCorrection& state, Scalar heading,
+                                 Scalar unaided, Scalar dt_s, const CascadeTraits& traits) {
+         then(state, heading, unaided, dt_s, traits);
          return false;
        });
      }},
@@ -205,18 +203,17 @@ const Fault yaw_lock_list[] = {
      "goes on with the yaw correction after a time without unaided heading",
      "an unaided heading that is lost during a convergence", "a missing reset",
      [](FaultyLaw& law) {
-       change_correction(law, [](YawCorrection& state, Scalar heading, Scalar unaided, Scalar dt_s,
-                                 const CascadeTraits& traits) {
-         return std::isfinite(unaided) &&
-                StickLaw::correct_yaw(state, heading, unaided, dt_s, traits);
+       change_correction(law, [](const auto& then, YawCorrection& state, Scalar heading,
+                                 Scalar unaided, Scalar dt_s, const CascadeTraits& traits) {
+         return std::isfinite(unaided) && then(state, heading, unaided, dt_s, traits);
        });
      }},
     {"cascade-yaw-correction-added", "sticks", Stage::yaw_lock, "adds heading and unaided heading",
      "an unaided heading", "a sign",
      [](FaultyLaw& law) {
-       change_correction(law, [](YawCorrection& state, Scalar heading, Scalar unaided, Scalar dt_s,
-                                 const CascadeTraits& traits) {
-         return StickLaw::correct_yaw(state, heading, -unaided, dt_s, traits);
+       change_correction(law, [](const auto& then, YawCorrection& state, Scalar heading,
+                                 Scalar unaided, Scalar dt_s, const CascadeTraits& traits) {
+         return then(state, heading, -unaided, dt_s, traits);
        });
      }},
     {"cascade-yaw-bad-heading-ignored",

@@ -46,22 +46,25 @@ void change_rate_limit(FaultyLaw& law, Limit limit) {
 // Limits the rates before the feed-forward.
 void limit_early(FaultyLaw& law) {
   auto& stages = law.attitude_unit.attitude;
-  stages.proportional = [](const Quat& error, const QuaternionGains& gains) {
-    return QuaternionStages::Law::limit(QuaternionStages::Law::proportional(error, gains), gains);
-  };
+  change_stage(stages.proportional,
+               [](const auto& then, const Quat& error, const QuaternionGains& gains) {
+                 return QuaternionStages::Law::limit(then(error, gains), gains);
+               });
   stages.limit = [](const Vector& rates, const QuaternionGains&) { return rates; };
 }
 
 // The limits do not hold in manual modes.
 void limit_without_sticks(FaultyLaw& law) {
   auto sticks = std::make_shared<bool>(false);
-  law.attitude_unit.step.follows_sticks = [sticks](const cascade::AttitudeTopics& topics) {
-    *sticks = topics.mode.flag_control_manual_enabled != 0;
-    return AttitudeStepStages::Law::follows_sticks(topics);
-  };
-  law.attitude_unit.attitude.limit = [sticks](const Vector& rates, const QuaternionGains& gains) {
-    return *sticks ? rates : QuaternionStages::Law::limit(rates, gains);
-  };
+  change_stage(law.attitude_unit.step.follows_sticks,
+               [sticks](const auto& then, const cascade::AttitudeTopics& topics) {
+                 *sticks = topics.mode.flag_control_manual_enabled != 0;
+                 return then(topics);
+               });
+  change_stage(law.attitude_unit.attitude.limit,
+               [sticks](const auto& then, const Vector& rates, const QuaternionGains& gains) {
+                 return *sticks ? rates : then(rates, gains);
+               });
 }
 
 Vector clamped(const Vector& rates, const Vector& max) {
@@ -76,15 +79,15 @@ void take_apart(FaultyLaw& law) {
   };
   auto parts = std::make_shared<Parts>();
   auto& stages = law.attitude_unit.attitude;
-  stages.target = [parts](const Quat& tilted, const Quat& yaw) {
+  change_stage(stages.target, [parts](const auto& then, const Quat& tilted, const Quat& yaw) {
     *parts = {tilted, yaw[3]};
-    return QuaternionStages::Law::target(tilted, yaw);
-  };
-  stages.error = [parts](const Quat& q_WB, const Quat&) {
-    Quat error = QuaternionStages::Law::error(q_WB, parts->tilted);
+    return then(tilted, yaw);
+  });
+  change_stage(stages.error, [parts](const auto& then, const Quat& q_WB, const Quat&) {
+    Quat error = then(q_WB, parts->tilted);
     error[3] = parts->yaw;
     return error;
-  };
+  });
 }
 
 const Fault yaw_weight_list[] = {
@@ -245,11 +248,12 @@ const Fault yaw_weight_list[] = {
        change_gains(law.attitude_unit, [max](AttitudeUnitGains& g, const CascadeParameters&) {
          *max = g.attitude.rate_max_rad_s;
        });
-       law.attitude_unit.step.autotuned = [max](const Vector& rates,
-                                                const cascade::AttitudeTopics& topics,
-                                                std::uint64_t now_us, const CascadeTraits& traits) {
-         return clamped(AttitudeStepStages::Law::autotuned(rates, topics, now_us, traits), *max);
-       };
+       change_stage(
+           law.attitude_unit.step.autotuned,
+           [max](const auto& then, const Vector& rates, const cascade::AttitudeTopics& topics,
+                 std::uint64_t now_us, const CascadeTraits& traits) {
+             return clamped(then(rates, topics, now_us, traits), *max);
+           });
      }},
 };
 
@@ -263,11 +267,12 @@ const Fault yaw_feed_forward_list[] = {
        change_gains(law.attitude_unit, [max](AttitudeUnitGains& gains, const CascadeParameters&) {
          *max = gains.attitude.rate_max_rad_s[2];
        });
-       law.attitude_unit.attitude.feed_forward = [max](V rates, const Quat& q_WB, Scalar yaw_rate) {
-         const Scalar limited =
-             std::isfinite(yaw_rate) ? std::clamp(yaw_rate, -*max, *max) : yaw_rate;
-         return QuaternionStages::Law::feed_forward(rates, q_WB, limited);
-       };
+       change_stage(law.attitude_unit.attitude.feed_forward,
+                    [max](const auto& then, V rates, const Quat& q_WB, Scalar yaw_rate) {
+                      const Scalar limited =
+                          std::isfinite(yaw_rate) ? std::clamp(yaw_rate, -*max, *max) : yaw_rate;
+                      return then(rates, q_WB, limited);
+                    });
      }},
     {"cascade-yaw-ff-missing", "rate_limit", Stage::feed_forward,
      "does not add the commanded yaw rate", "a yaw rate", "a missing term",
@@ -301,10 +306,11 @@ const Fault yaw_feed_forward_list[] = {
      "another attitude",
      [](FaultyLaw& law) {
        auto q_WD = std::make_shared<Quat>(cascade::identity<Scalar>());
-       law.attitude_unit.attitude.error = [q_WD](const Quat& q_WB, const Quat& target) {
-         *q_WD = target;
-         return QuaternionStages::Law::error(q_WB, target);
-       };
+       change_stage(law.attitude_unit.attitude.error,
+                    [q_WD](const auto& then, const Quat& q_WB, const Quat& target) {
+                      *q_WD = target;
+                      return then(q_WB, target);
+                    });
        change_yaw_feed_forward(law, [q_WD](const Quat&, Scalar yaw_rate) {
          return Vector(cascade::z_axis(cascade::inverse(*q_WD)) * yaw_rate);
        });

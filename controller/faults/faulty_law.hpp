@@ -9,6 +9,7 @@
 #include <numbers>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "controller/actuation/battery_status.hpp"
 #include "controller/actuation/mixer.hpp"
@@ -135,22 +136,31 @@ struct FaultyLaw : Around<attest_inputs, attest_outputs> {
   RateUnitLaw rate_unit;
 };
 
+// Changes a stage of a law. `changed` gets the present function of the stage, and then the
+// arguments, so that two faults of one stage can act at once.
+template <typename Result, typename... Arguments, typename Changed>
+void change_stage(std::function<Result(Arguments...)>& stage, Changed changed) {
+  stage = [then = std::move(stage), changed](Arguments... arguments) mutable -> Result {
+    return changed(std::as_const(then), std::forward<Arguments>(arguments)...);
+  };
+}
+
 // also_before() and also_after() keep the present function and call `added` after it, so that two
 // faults can act at once. Law is FaultyLaw, AttitudeUnitLaw or RateUnitLaw.
 template <typename Law, typename Added>
 void also_before(Law& law, Added added) {
-  law.before = [then = law.before, added](typename Law::Inputs& in) mutable {
+  change_stage(law.before, [added](const auto& then, typename Law::Inputs& in) mutable {
     then(in);
     added(in);
-  };
+  });
 }
 template <typename Law, typename Added>
 void also_after(Law& law, Added added) {
-  law.after = [then = law.after, added](const typename Law::Inputs& in,
-                                        typename Law::Outputs& out) mutable {
+  change_stage(law.after, [added](const auto& then, const typename Law::Inputs& in,
+                                  typename Law::Outputs& out) mutable {
     then(in, out);
     added(in, out);
-  };
+  });
 }
 
 }  // namespace attest::faults

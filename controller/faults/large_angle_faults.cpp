@@ -77,18 +77,19 @@ const Fault large_angle_list[] = {
     {"blend-exchanged", "large_angle", Stage::blend, "exchanges the shares",
      "a tilt error beyond 90 deg", "wrong weight",
      [](FaultyLaw& law) {
-       law.attitude.blend = [](const Vector& error, const Vector& direct, float c, float weight) {
-         return AttitudeStages::Law::blend(direct, error, c, weight);
-       };
+       change_stage(law.attitude.blend,
+                    [](const auto& then, const Vector& error, const Vector& direct, float c,
+                       float weight) { return then(direct, error, c, weight); });
      }},
     {"blend-not-yaw", "large_angle", Stage::blend, "leaves yaw out of the blend",
      "an upset with a yaw error", "wrong axis",
      [](FaultyLaw& law) {
-       law.attitude.blend = [](const Vector& error, const Vector& direct, float c, float weight) {
-         Vector blended = AttitudeStages::Law::blend(error, direct, c, weight);
+       change_stage(law.attitude.blend, [](const auto& then, const Vector& error,
+                                           const Vector& direct, float c, float weight) {
+         Vector blended = then(error, direct, c, weight);
          blended[2] = error[2];
          return blended;
-       };
+       });
      }},
     {"direct-not-doubled", "large_angle", Stage::blend, "does not double the imaginary part",
      "a tilt error beyond 90 deg", "quaternion order",
@@ -183,11 +184,12 @@ const Fault large_angle_list[] = {
     {"upset-tilt-bounded", "large_angle", Stage::tilt, "bounds the tilt error at 90 deg",
      "a tilt error beyond 90 deg", "misplaced clamp",
      [](FaultyLaw& law) {
-       law.attitude.tilt_error = [](const Matrix& R_WB, const Matrix& R_WD) {
-         Tilt tilt = AttitudeStages::Law::tilt_error(R_WB, R_WD);
-         if (tilt.cosine < 0) tilt.rotation_B = tilt.axis_B * 1.57079632679f;
-         return tilt;
-       };
+       change_stage(law.attitude.tilt_error,
+                    [](const auto& then, const Matrix& R_WB, const Matrix& R_WD) {
+                      Tilt tilt = then(R_WB, R_WD);
+                      if (tilt.cosine < 0) tilt.rotation_B = tilt.axis_B * 1.57079632679f;
+                      return tilt;
+                    });
      }},
     {"upset-at-90", "large_angle", Stage::blend, "blends at exactly 90 deg",
      "a tilt error of exactly 90 deg", "a condition made non-strict",

@@ -18,17 +18,19 @@ using Rotors = std::span<const Rotor>;
 // Replaces each rotor of the geometry.
 template <typename Change>
 void change_rotors(FaultyLaw& law, Change change) {
-  law.mixer.without_yaw = [change](const Rotor& rotor, const Controls& c, float scale) {
-    return Law::without_yaw(change(rotor), c, scale);
-  };
-  law.mixer.yield_yaw = [change](Rotors rotors, Controls& c, const Fit& fit) {
-    std::array<Rotor, actuation::rotors_max> changed{};
-    std::transform(rotors.begin(), rotors.end(), changed.begin(), change);
-    return Law::yield_yaw(Rotors(changed).first(rotors.size()), c, fit);
-  };
-  law.mixer.command = [change](const Rotor& rotor, const Controls& c, const Fit& fit, float idle) {
-    return Law::command(change(rotor), c, fit, idle);
-  };
+  change_stage(law.mixer.without_yaw,
+               [change](const auto& then, const Rotor& rotor, const Controls& c, float scale) {
+                 return then(change(rotor), c, scale);
+               });
+  change_stage(law.mixer.yield_yaw,
+               [change](const auto& then, Rotors rotors, Controls& c, const Fit& fit) {
+                 std::array<Rotor, actuation::rotors_max> changed{};
+                 std::transform(rotors.begin(), rotors.end(), changed.begin(), change);
+                 return then(Rotors(changed).first(rotors.size()), c, fit);
+               });
+  change_stage(law.mixer.command,
+               [change](const auto& then, const Rotor& rotor, const Controls& c, const Fit& fit,
+                        float idle) { return then(change(rotor), c, fit, idle); });
 }
 
 // Replaces the change of yaw and thrust at a rotor beyond its limits.
@@ -68,43 +70,47 @@ const Fault mixer_list[] = {
     {"mixer-thrust-unclamped", "mixer", Stage::mixer_scaling, "does not clamp thrust to 0..1",
      "thrust outside 0..1", "missing clamp",
      [](FaultyLaw& law) {
-       law.mixer.scaled = [](const Controls& c, const Scales& scales) {
-         Controls scaled = Law::scaled(c, scales);
-         scaled.thrust = c.thrust;
-         return scaled;
-       };
+       change_stage(law.mixer.scaled,
+                    [](const auto& then, const Controls& c, const Scales& scales) {
+                      Controls scaled = then(c, scales);
+                      scaled.thrust = c.thrust;
+                      return scaled;
+                    });
      }},
     {"mixer-unscaled", "mixer", Stage::mixer_scaling, "ignores the scales of its definition",
      "a scale other than 1", "a missing factor",
      [](FaultyLaw& law) {
-       law.mixer.scaled = [](const Controls& c, const Scales&) {
-         return Law::scaled(c, {1, 1, 1, 0});
-       };
+       change_stage(law.mixer.scaled, [](const auto& then, const Controls& c, const Scales&) {
+         return then(c, {1, 1, 1, 0});
+       });
      }},
     {"mixer-clamp-then-scale", "mixer", Stage::mixer_scaling, "clamps before it scales",
      "a control beyond 1 and a scale below 1", "scaling order",
      [](FaultyLaw& law) {
-       law.mixer.scaled = [](const Controls& c, const Scales& scales) {
-         const Controls clamped = Law::scaled(c, {1, 1, 1, 0});
-         return Controls{clamped.roll * scales.roll, clamped.pitch * scales.pitch,
-                         clamped.yaw * scales.yaw, clamped.thrust};
-       };
+       change_stage(law.mixer.scaled,
+                    [](const auto& then, const Controls& c, const Scales& scales) {
+                      const Controls clamped = then(c, {1, 1, 1, 0});
+                      return Controls{clamped.roll * scales.roll, clamped.pitch * scales.pitch,
+                                      clamped.yaw * scales.yaw, clamped.thrust};
+                    });
      }},
     {"mixer-scales-at-most-1", "mixer", Stage::mixer_scaling, "clamps scales to 1",
      "a scale beyond 1", "a helpful clamp",
      [](FaultyLaw& law) {
-       law.mixer.scaled = [](const Controls& c, const Scales& scales) {
-         return Law::scaled(c, {std::min(scales.roll, 1.0f), std::min(scales.pitch, 1.0f),
-                                std::min(scales.yaw, 1.0f), scales.idle});
-       };
+       change_stage(law.mixer.scaled,
+                    [](const auto& then, const Controls& c, const Scales& scales) {
+                      return then(c, {std::min(scales.roll, 1.0f), std::min(scales.pitch, 1.0f),
+                                      std::min(scales.yaw, 1.0f), scales.idle});
+                    });
      }},
     {"mixer-scales-unsigned", "mixer", Stage::mixer_scaling, "uses the magnitude of a scale",
      "a scale below 0", "a sign",
      [](FaultyLaw& law) {
-       law.mixer.scaled = [](const Controls& c, const Scales& scales) {
-         return Law::scaled(
-             c, {std::abs(scales.roll), std::abs(scales.pitch), std::abs(scales.yaw), scales.idle});
-       };
+       change_stage(law.mixer.scaled,
+                    [](const auto& then, const Controls& c, const Scales& scales) {
+                      return then(c, {std::abs(scales.roll), std::abs(scales.pitch),
+                                      std::abs(scales.yaw), scales.idle});
+                    });
      }},
     {"mixer-roll-left", "mixer", Stage::mixer_scaling, "rolls the other way", "roll", "a sign",
      [](FaultyLaw& law) {
@@ -134,10 +140,11 @@ const Fault mixer_list[] = {
     {"mixer-no-yaw-flag", "mixer", Stage::mixer_yaw, "never reports that yaw was cut",
      "yaw that saturates", "a missing step",
      [](FaultyLaw& law) {
-       law.mixer.yield_yaw = [](Rotors rotors, Controls& c, const Fit& fit) {
-         Law::yield_yaw(rotors, c, fit);
-         return false;
-       };
+       change_stage(law.mixer.yield_yaw,
+                    [](const auto& then, Rotors rotors, Controls& c, const Fit& fit) {
+                      then(rotors, c, fit);
+                      return false;
+                    });
      }},
     {"mixer-yaw-clipped", "mixer", Stage::mixer_yaw, "clips each rotor instead of cutting yaw",
      "yaw that saturates", "a missing step",
@@ -151,17 +158,18 @@ const Fault mixer_list[] = {
      "does not carry the cut of one rotor on to the next", "yaw that several rotors cut",
      "a copy in place of a reference",
      [](FaultyLaw& law) {
-       law.mixer.yield_yaw = [](Rotors rotors, Controls& c, const Fit& fit) {
-         const Controls given = c;
-         bool cut = false;
-         for (std::size_t i = 0; i < rotors.size(); ++i) {
-           Controls alone = given;
-           if (!Law::yield_yaw(rotors.subspan(i, 1), alone, fit)) continue;
-           c = alone;
-           cut = true;
-         }
-         return cut;
-       };
+       change_stage(law.mixer.yield_yaw,
+                    [](const auto& then, Rotors rotors, Controls& c, const Fit& fit) {
+                      const Controls given = c;
+                      bool cut = false;
+                      for (std::size_t i = 0; i < rotors.size(); ++i) {
+                        Controls alone = given;
+                        if (!then(rotors.subspan(i, 1), alone, fit)) continue;
+                        c = alone;
+                        cut = true;
+                      }
+                      return cut;
+                    });
      }},
     {"mixer-yaw-keeps-thrust", "mixer", Stage::mixer_yaw, "gives up no thrust for yaw",
      "yaw at the upper limit", "a missing step",
@@ -172,30 +180,31 @@ const Fault mixer_list[] = {
     {"mixer-yaw-without-boost", "mixer", Stage::mixer_yaw, "leaves out the boost when it cuts yaw",
      "yaw together with roll that saturates", "a missing term",
      [](FaultyLaw& law) {
-       law.mixer.yield_yaw = [](Rotors rotors, Controls& c, const Fit& fit) {
-         return Law::yield_yaw(rotors, c, {0, fit.roll_pitch_scale});
-       };
+       change_stage(law.mixer.yield_yaw,
+                    [](const auto& then, Rotors rotors, Controls& c, const Fit& fit) {
+                      return then(rotors, c, {0, fit.roll_pitch_scale});
+                    });
      }},
     {"mixer-output-0-to-1", "mixer", Stage::mixer_output, "outputs 0..1", "always",
      "another convention",
      [](FaultyLaw& law) {
-       law.mixer.command = [](const Rotor& rotor, const Controls& c, const Fit& fit, float idle) {
-         return (Law::command(rotor, c, fit, idle) + 1) / 2;
-       };
+       change_stage(law.mixer.command,
+                    [](const auto& then, const Rotor& rotor, const Controls& c, const Fit& fit,
+                       float idle) { return (then(rotor, c, fit, idle) + 1) / 2; });
      }},
     {"mixer-deadband-halved", "mixer", Stage::mixer_output, "lifts the idle by half the deadband",
      "a deadband", "a missing factor",
      [](FaultyLaw& law) {
-       law.mixer.command = [](const Rotor& rotor, const Controls& c, const Fit& fit, float idle) {
-         return Law::command(rotor, c, fit, (idle - 1) / 2);
-       };
+       change_stage(law.mixer.command,
+                    [](const auto& then, const Rotor& rotor, const Controls& c, const Fit& fit,
+                       float idle) { return then(rotor, c, fit, (idle - 1) / 2); });
      }},
     {"mixer-idle-clips", "mixer", Stage::mixer_output, "clips at idle instead of scaling to it",
      "a deadband", "a helpful simplification",
      [](FaultyLaw& law) {
-       law.mixer.command = [](const Rotor& rotor, const Controls& c, const Fit& fit, float idle) {
-         return std::max(idle, Law::command(rotor, c, fit, -1));
-       };
+       change_stage(law.mixer.command,
+                    [](const auto& then, const Rotor& rotor, const Controls& c, const Fit& fit,
+                       float idle) { return std::max(idle, then(rotor, c, fit, -1)); });
      }},
     {"mixer-no-slew", "mixer", Stage::mixer_output, "does not limit the change of the outputs",
      "a limit and a jump", "a missing step",
@@ -211,9 +220,10 @@ const Fault mixer_list[] = {
     {"mixer-slew-up-only", "mixer", Stage::mixer_output, "limits rising outputs only",
      "a limit and a fall", "a condition dropped",
      [](FaultyLaw& law) {
-       law.mixer.slew = [](float wanted, float previous, float limit) {
-         return wanted < previous ? wanted : Law::slew(wanted, previous, limit);
-       };
+       change_stage(law.mixer.slew,
+                    [](const auto& then, float wanted, float previous, float limit) {
+                      return wanted < previous ? wanted : then(wanted, previous, limit);
+                    });
      }},
     {"mixer-slew-always", "mixer", Stage::mixer_output,
      "treats 0 as a limit instead of as no limit", "no limit", "a condition dropped",
@@ -225,9 +235,10 @@ const Fault mixer_list[] = {
     {"mixer-slew-by-magnitude", "mixer", Stage::mixer_output,
      "uses the magnitude of a negative limit", "a limit below 0", "a helpful simplification",
      [](FaultyLaw& law) {
-       law.mixer.slew = [](float wanted, float previous, float limit) {
-         return Law::slew(wanted, previous, std::abs(limit));
-       };
+       change_stage(law.mixer.slew,
+                    [](const auto& then, float wanted, float previous, float limit) {
+                      return then(wanted, previous, std::abs(limit));
+                    });
      }},
 };
 

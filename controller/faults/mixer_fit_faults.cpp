@@ -13,9 +13,10 @@ using actuation::Saturation;
 // Changes the fit of roll and pitch. `change` gets the law's fit, min_out, max_out and thrust.
 template <typename Change>
 void change_fit(FaultyLaw& law, Change change) {
-  law.mixer.fit = [change](float min_out, float max_out, float thrust) {
-    return change(Law::fit(min_out, max_out, thrust), min_out, max_out, thrust);
-  };
+  change_stage(law.mixer.fit,
+               [change](const auto& then, float min_out, float max_out, float thrust) {
+                 return change(then(min_out, max_out, thrust), min_out, max_out, thrust);
+               });
 }
 
 const Fault mixer_fit_list[] = {

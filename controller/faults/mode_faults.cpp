@@ -17,11 +17,11 @@ void change_sticks(FaultyLaw& law, Beyond beyond) {
 
 template <typename Change>
 void change_acro(FaultyLaw& law, Change change) {
-  law.step.acro = [change](const Manual& manual, const Gains& gains) {
-    RateCommand command = StepStages::Law::acro(manual, gains);
+  change_stage(law.step.acro, [change](const auto& then, const Manual& manual, const Gains& gains) {
+    RateCommand command = then(manual, gains);
     change(command, manual, gains);
     return command;
-  };
+  });
 }
 
 bool flies_attitude(const attest_inputs& in) {
@@ -57,10 +57,12 @@ const Fault modes[] = {
     {"rattitude-for-good", "modes", Stage::mode, "stays in rates mode when a new mode is published",
      "a new mode after a large deflection", "a latch",
      [](FaultyLaw& law) {
-       law.step.sticks_beyond = [latched = false](const Manual& manual, float threshold) mutable {
-         latched = latched || StepStages::Law::sticks_beyond(manual, threshold);
-         return latched;
-       };
+       change_stage(
+           law.step.sticks_beyond,
+           [latched = false](const auto& then, const Manual& manual, float threshold) mutable {
+             latched = latched || then(manual, threshold);
+             return latched;
+           });
      }},
     {"rattitude-missing", "modes", Stage::mode, "does not implement rattitude",
      "a large deflection", "a missing step",
@@ -197,11 +199,11 @@ const Fault modes[] = {
      "misplaced clamp",
      [](FaultyLaw& law) {
        auto bound = std::make_shared<Vector>(Vector::Zero());
-       law.step.gains = [bound](const Parameters& parameters) {
-         const Gains gains = StepStages::Law::gains(parameters);
+       change_stage(law.step.gains, [bound](const auto& then, const Parameters& parameters) {
+         const Gains gains = then(parameters);
          *bound = gains.attitude.rate_max_rad_s;
          return gains;
-       };
+       });
        also_before(law, [bound](attest_inputs& in) {
          auto& sp = in.vehicle_rates_setpoint;
          if ((*bound)[0] == 0) return;
@@ -283,9 +285,9 @@ const Fault modes[] = {
        also_before(law, [stopped](attest_inputs& in) {
          if (in.vehicle_control_mode.flag_control_rates_enabled == 0) *stopped = true;
        });
-       law.step.is_flying = [stopped](const Topics& topics) {
-         return StepStages::Law::is_flying(topics) && !std::exchange(*stopped, false);
-       };
+       change_stage(law.step.is_flying, [stopped](const auto& then, const Topics& topics) {
+         return then(topics) && !std::exchange(*stopped, false);
+       });
      }},
     {"mode-resets", "modes", Stage::i, "resets the integrals when the mode changes",
      "a change of mode after some integration", "a reset too many",
@@ -295,9 +297,9 @@ const Fault modes[] = {
          *changed = flies_attitude(in) != last;
          last = flies_attitude(in);
        });
-       law.step.is_flying = [changed](const Topics& topics) {
-         return StepStages::Law::is_flying(topics) && !*changed;
-       };
+       change_stage(law.step.is_flying, [changed](const auto& then, const Topics& topics) {
+         return then(topics) && !*changed;
+       });
      }},
 };
 

@@ -13,11 +13,11 @@ using P = Parameters;
 // Computes the gains from changed parameters.
 template <typename Change>
 void change_parameters(FaultyLaw& law, Change change) {
-  law.step.gains = [change, then = law.step.gains](const Parameters& parameters) {
+  change_stage(law.step.gains, [change](const auto& then, const Parameters& parameters) {
     Parameters changed = parameters;
     change(changed);
     return then(changed);
-  };
+  });
 }
 
 // Uses the value of parameter `from` also for parameter `to`.
@@ -40,11 +40,11 @@ void never_read(FaultyLaw& law) {
 
 template <typename Change>
 void change_gains(FaultyLaw& law, Change change) {
-  law.step.gains = [change, then = law.step.gains](const Parameters& parameters) {
+  change_stage(law.step.gains, [change](const auto& then, const Parameters& parameters) {
     Gains gains = then(parameters);
     change(gains, parameters);
     return gains;
-  };
+  });
 }
 
 constexpr const char* wrong_name = "a wrong parameter";
@@ -58,18 +58,20 @@ const Fault parameter_list[] = {
     {"param-at-start-only", "parameters", Stage::parameters, "reads parameters once",
      "a parameter that changes in flight", "a latch",
      [](FaultyLaw& law) {
-       law.step.gains = [first = std::optional<Parameters>{}](const Parameters& p) mutable {
+       change_stage(law.step.gains, [first = std::optional<Parameters>{}](
+                                        const auto& then, const Parameters& p) mutable {
          if (!first) first = p;
-         return StepStages::Law::gains(*first);
-       };
+         return then(*first);
+       });
      }},
     {"param-one-update-late", "parameters", Stage::parameters,
      "uses the parameters of the previous update", "a parameter that changes in flight",
      "one-tick delay",
      [](FaultyLaw& law) {
-       law.step.gains = [last = std::optional<Parameters>{}](const Parameters& p) mutable {
-         return StepStages::Law::gains(std::exchange(last, p).value_or(p));
-       };
+       change_stage(law.step.gains, [last = std::optional<Parameters>{}](
+                                        const auto& then, const Parameters& p) mutable {
+         return then(std::exchange(last, p).value_or(p));
+       });
      }},
     {"tc-ignored", "parameters", Stage::parameters, "does not read the time constants",
      "a time constant other than 0.2", not_read,

@@ -26,34 +26,35 @@ void integrate_trapezoids(FaultyLaw& law) {
   };
   auto errors = std::make_shared<Errors>();
   auto& stages = law.rate;
-  stages.proportional = [errors, then = stages.proportional](V error, float attenuation,
-                                                             const RateGains& gains) {
-    errors->last = std::exchange(errors->now, error);
-    return then(error, attenuation, gains);
-  };
-  stages.growth = [errors, then = stages.growth](V error, float dt_s, const RateGains& gains) {
-    return then(0.5f * (error + errors->last), dt_s, gains);
-  };
+  change_stage(stages.proportional,
+               [errors](const auto& then, V error, float attenuation, const RateGains& gains) {
+                 errors->last = std::exchange(errors->now, error);
+                 return then(error, attenuation, gains);
+               });
+  change_stage(stages.growth,
+               [errors](const auto& then, V error, float dt_s, const RateGains& gains) {
+                 return then(0.5f * (error + errors->last), dt_s, gains);
+               });
 }
 
 void feed_measured_rates_forward(FaultyLaw& law) {
   auto measured = std::make_shared<Vector>(Vector::Zero());
   auto& stages = law.rate;
-  stages.derivative = [measured, then = stages.derivative](V prev, V rates, float dt_s,
-                                                           const RateGains& gains) {
-    *measured = rates;
-    return then(prev, rates, dt_s, gains);
-  };
-  stages.feed_forward = [measured, then = stages.feed_forward](V, const RateGains& gains) {
+  change_stage(stages.derivative,
+               [measured](const auto& then, V prev, V rates, float dt_s, const RateGains& gains) {
+                 *measured = rates;
+                 return then(prev, rates, dt_s, gains);
+               });
+  change_stage(stages.feed_forward, [measured](const auto& then, V, const RateGains& gains) {
     return then(*measured, gains);
-  };
+  });
 }
 
 void take_dt_as_ms(FaultyLaw& law) {
   auto& stages = law.rate;
-  stages.growth = [then = stages.growth](V error, float dt_s, const RateGains& gains) {
+  change_stage(stages.growth, [](const auto& then, V error, float dt_s, const RateGains& gains) {
     return then(error, dt_s * 0.001f, gains);
-  };
+  });
   for (auto* change : {&stages.derivative, &stages.feed_forward_change}) {
     *change = [then = *change](V one, V other, float dt_s, const RateGains& gains) {
       return then(one, other, dt_s * 0.001f, gains);
@@ -86,9 +87,10 @@ const Fault rate_list[] = {
      }},
     {"error-reversed", "rates", Stage::p, "computes rates minus setpoint", "a rate error", "a sign",
      [](FaultyLaw& law) {
-       law.rate.proportional = [](V error, float attenuation, const RateGains& gains) {
-         return Vector(-RateStages::Law::proportional(error, attenuation, gains));
-       };
+       change_stage(law.rate.proportional,
+                    [](const auto& then, V error, float attenuation, const RateGains& gains) {
+                      return Vector(-then(error, attenuation, gains));
+                    });
      }},
     {"rates-setpoint-late", "rates", Stage::input,
      "controls the rates to the setpoint of the step before", "a setpoint that changes",
@@ -143,31 +145,33 @@ const Fault rate_list[] = {
     {"d-over-two-ticks", "rates", Stage::d, "uses the rates of two ticks ago", "rates that change",
      "one-tick delay",
      [](FaultyLaw& law) {
-       law.rate.derivative = [older = Vector(Vector::Zero())](V prev, V rates, float dt,
-                                                              const RateGains& gains) mutable {
-         const Vector before = older;
-         older = prev;
-         return RateStages::Law::derivative(before, rates, dt, gains);
-       };
+       change_stage(law.rate.derivative,
+                    [older = Vector(Vector::Zero())](const auto& then, V prev, V rates, float dt,
+                                                     const RateGains& gains) mutable {
+                      const Vector before = older;
+                      older = prev;
+                      return then(before, rates, dt, gains);
+                    });
      }},
     {"d-no-first-kick", "rates", Stage::d, "has no D term in the first step",
      "a first step that turns", "initial state",
      [](FaultyLaw& law) {
-       law.rate.derivative = [first = true](V prev, V rates, float dt,
-                                            const RateGains& gains) mutable {
+       change_stage(law.rate.derivative, [first = true](const auto& then, V prev, V rates, float dt,
+                                                        const RateGains& gains) mutable {
          const Vector before = first ? rates : prev;
          first = false;
-         return RateStages::Law::derivative(before, rates, dt, gains);
-       };
+         return then(before, rates, dt, gains);
+       });
      }},
     {"d-filtered", "rates", Stage::d, "low-passes the D term", "rates that change",
      "a helpful extra",
      [](FaultyLaw& law) {
-       law.rate.derivative = [filtered = Vector(Vector::Zero())](V prev, V rates, float dt,
-                                                                 const RateGains& gains) mutable {
-         filtered += 0.5f * (RateStages::Law::derivative(prev, rates, dt, gains) - filtered);
-         return filtered;
-       };
+       change_stage(law.rate.derivative,
+                    [filtered = Vector(Vector::Zero())](const auto& then, V prev, V rates, float dt,
+                                                        const RateGains& gains) mutable {
+                      filtered += 0.5f * (then(prev, rates, dt, gains) - filtered);
+                      return filtered;
+                    });
      }},
     {"ff-of-change",
      "rates",
@@ -194,9 +198,9 @@ const Fault rate_list[] = {
      "a wrong input",
      [](FaultyLaw& law) {
        auto seen = watch(law);
-       law.rate.feed_forward = [seen](V, const RateGains& gains) {
-         return RateStages::Law::feed_forward(seen->error, gains);
-       };
+       change_stage(law.rate.feed_forward, [seen](const auto& then, V, const RateGains& gains) {
+         return then(seen->error, gains);
+       });
      },
      {},
      mc_att_control::from_v1_5_5},
@@ -205,14 +209,16 @@ const Fault rate_list[] = {
      [](FaultyLaw& law) {
        auto growth = std::make_shared<Vector>(Vector::Zero());
        auto dt_s = std::make_shared<float>(0.0f);
-       law.rate.derivative = [dt_s](V prev, V rates, float dt, const RateGains& gains) {
-         *dt_s = dt;
-         return RateStages::Law::derivative(prev, rates, dt, gains);
-       };
-       law.rate.proportional = [growth](V error, float attenuation, const RateGains& gains) {
-         *growth = gains.integral.cwiseProduct(error);
-         return RateStages::Law::proportional(error, attenuation, gains);
-       };
+       change_stage(law.rate.derivative,
+                    [dt_s](const auto& then, V prev, V rates, float dt, const RateGains& gains) {
+                      *dt_s = dt;
+                      return then(prev, rates, dt, gains);
+                    });
+       change_stage(law.rate.proportional,
+                    [growth](const auto& then, V error, float attenuation, const RateGains& gains) {
+                      *growth = gains.integral.cwiseProduct(error);
+                      return then(error, attenuation, gains);
+                    });
        law.rate.control = [growth, dt_s](V p, V d, V i, V ff) {
          return Vector(p + d + i + *growth * *dt_s + ff);
        };
@@ -227,23 +233,23 @@ const Fault rate_list[] = {
     {"i-fixed-dt", "rates", Stage::i, "integrates as if every step took 4 ms",
      "any rate except 250 Hz", "a fixed rate",
      [](FaultyLaw& law) {
-       law.rate.growth = [](V error, float, const RateGains& gains) {
-         return RateStages::Law::growth(error, 0.004f, gains);
-       };
+       change_stage(law.rate.growth, [](const auto& then, V error, float, const RateGains& gains) {
+         return then(error, 0.004f, gains);
+       });
      }},
     {"i-without-dt", "rates", Stage::i, "does not multiply by dt", "an error that lasts",
      "a missing factor",
      [](FaultyLaw& law) {
-       law.rate.growth = [](V error, float, const RateGains& gains) {
-         return RateStages::Law::growth(error, 1, gains);
-       };
+       change_stage(law.rate.growth, [](const auto& then, V error, float, const RateGains& gains) {
+         return then(error, 1, gains);
+       });
      }},
     {"controls-limited", "rates", Stage::output, "limits the controls to 1", "a control beyond 1",
      "misplaced clamp",
      [](FaultyLaw& law) {
-       law.rate.control = [then = law.rate.control](V p, V d, V i, V ff) {
+       change_stage(law.rate.control, [](const auto& then, V p, V d, V i, V ff) {
          return Vector(then(p, d, i, ff).cwiseMin(1).cwiseMax(-1));
-       };
+       });
      }},
     {"roll-pitch-exchanged", "rates", Stage::output, "exchanges roll and pitch",
      "roll and pitch that differ", "wrong axis",
@@ -294,12 +300,11 @@ const Fault rate_list[] = {
     {"integral-in-12-bits", "rates", Stage::i, "holds the integrals in 12 bits",
      "an error that lasts", "fixed point",
      [](FaultyLaw& law) {
-       law.rate.integrate_axis = [](float integral, float control, float thrust, float growth,
-                                    bool frozen) {
-         const float next =
-             RateStages::Law::integrate_axis(integral, control, thrust, growth, frozen);
+       change_stage(law.rate.integrate_axis, [](const auto& then, float integral, float control,
+                                                float thrust, float growth, bool frozen) {
+         const float next = then(integral, control, thrust, growth, frozen);
          return std::round(next * 4096) / 4096;
-       };
+       });
      }},
 };
 

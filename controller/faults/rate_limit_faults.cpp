@@ -88,11 +88,12 @@ const Fault limit_faults[] = {
     {"limit-not-yaw", "rate_limit", Stage::limit, "does not limit yaw", "a large yaw error",
      "missing clamp",
      [](FaultyLaw& law) {
-       law.attitude.limit = [](const Vector& rates, bool autonomous, const AttitudeGains& gains) {
-         Vector limited = AttitudeStages::Law::limit(rates, autonomous, gains);
+       change_stage(law.attitude.limit, [](const auto& then, const Vector& rates, bool autonomous,
+                                           const AttitudeGains& gains) {
+         Vector limited = then(rates, autonomous, gains);
          limited[2] = rates[2];
          return limited;
-       };
+       });
      }},
     {"limit-manual-always", "rate_limit", Stage::limit, "uses the pilot's limits in all modes",
      "a large yaw error on a mission", "wrong branch",
@@ -220,47 +221,49 @@ const Fault feed_forward_faults[] = {
      "misplaced clamp",
      [](FaultyLaw& law) {
        auto bound = std::make_shared<float>(0.0f);
-       law.attitude.limit = [bound](const Vector& rates, bool autonomous,
-                                    const AttitudeGains& gains) {
+       change_stage(law.attitude.limit, [bound](const auto& then, const Vector& rates,
+                                                bool autonomous, const AttitudeGains& gains) {
          *bound = bound_of(autonomous, gains)[2];
-         Vector limited = AttitudeStages::Law::limit(rates, autonomous, gains);
+         Vector limited = then(rates, autonomous, gains);
          limited[2] = rates[2];
          return limited;
-       };
-       law.attitude.yaw_feed_forward = [bound](float yaw, float rate, float w,
-                                               const AttitudeGains& gains) {
-         const float fed = AttitudeStages::Law::yaw_feed_forward(yaw, rate, w, gains);
+       });
+       change_stage(law.attitude.yaw_feed_forward, [bound](const auto& then, float yaw, float rate,
+                                                           float w, const AttitudeGains& gains) {
+         const float fed = then(yaw, rate, w, gains);
          return mc_att_control::clamp(fed, -*bound, *bound);
-       };
+       });
      }},
     {"yaw-ff-limited-again", "yaw_feed_forward", Stage::feed_forward,
      "limits yaw once more after the feed-forward", "a yaw rate near its limit", "misplaced clamp",
      [](FaultyLaw& law) {
        auto bound = std::make_shared<float>(0.0f);
-       law.attitude.limit = [bound](const Vector& rates, bool autonomous,
-                                    const AttitudeGains& gains) {
+       change_stage(law.attitude.limit, [bound](const auto& then, const Vector& rates,
+                                                bool autonomous, const AttitudeGains& gains) {
          *bound = bound_of(autonomous, gains)[2];
-         return AttitudeStages::Law::limit(rates, autonomous, gains);
-       };
-       law.attitude.yaw_feed_forward = [bound](float yaw, float rate, float w,
-                                               const AttitudeGains& gains) {
-         const float fed = AttitudeStages::Law::yaw_feed_forward(yaw, rate, w, gains);
+         return then(rates, autonomous, gains);
+       });
+       change_stage(law.attitude.yaw_feed_forward, [bound](const auto& then, float yaw, float rate,
+                                                           float w, const AttitudeGains& gains) {
+         const float fed = then(yaw, rate, w, gains);
          return std::clamp(fed, -*bound, *bound);
-       };
+       });
      }},
     {"yaw-ff-pilot-only", "yaw_feed_forward", Stage::feed_forward,
      "feeds forward under a pilot only", "a commanded yaw rate on a mission", "wrong branch",
      [](FaultyLaw& law) {
        auto autonomous_now = std::make_shared<bool>(false);
-       law.attitude.limit = [autonomous_now](const Vector& rates, bool autonomous,
-                                             const AttitudeGains& gains) {
-         *autonomous_now = autonomous;
-         return AttitudeStages::Law::limit(rates, autonomous, gains);
-       };
-       law.attitude.yaw_feed_forward = [autonomous_now](float yaw, float rate, float w,
-                                                        const AttitudeGains& gains) {
-         return *autonomous_now ? yaw : AttitudeStages::Law::yaw_feed_forward(yaw, rate, w, gains);
-       };
+       change_stage(law.attitude.limit,
+                    [autonomous_now](const auto& then, const Vector& rates, bool autonomous,
+                                     const AttitudeGains& gains) {
+                      *autonomous_now = autonomous;
+                      return then(rates, autonomous, gains);
+                    });
+       change_stage(law.attitude.yaw_feed_forward,
+                    [autonomous_now](const auto& then, float yaw, float rate, float w,
+                                     const AttitudeGains& gains) {
+                      return *autonomous_now ? yaw : then(yaw, rate, w, gains);
+                    });
      }},
 };
 

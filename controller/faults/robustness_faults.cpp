@@ -33,12 +33,12 @@ const Fault robustness_list[] = {
      "a NaN on one axis", "NaN handling",
      [](FaultyLaw& law) {
        auto bad = std::make_shared<bool>(false);
-       law.rate.control = [bad](const Vector& p, const Vector& d, const Vector& i,
-                                const Vector& ff) {
-         const Vector control = RateStages::Law::control(p, d, i, ff);
+       change_stage(law.rate.control, [bad](const auto& then, const Vector& p, const Vector& d,
+                                            const Vector& i, const Vector& ff) {
+         const Vector control = then(p, d, i, ff);
          *bad = !control.allFinite();
          return *bad ? Vector(Vector::Zero()) : control;
-       };
+       });
      }},
     {"clamp-catches-nan", "robustness", Stage::guard, "clamps NaN to the limit", "a NaN attitude",
      "NaN handling",
@@ -55,11 +55,12 @@ const Fault robustness_list[] = {
     {"nan-throttle-is-nan", "robustness", Stage::guard, "passes a NaN throttle in acro",
      "a NaN throttle in acro", "NaN handling",
      [](FaultyLaw& law) {
-       law.step.acro = [](const decltype(Topics::manual)& manual, const Gains& gains) {
-         RateCommand command = StepStages::Law::acro(manual, gains);
+       change_stage(law.step.acro, [](const auto& then, const decltype(Topics::manual)& manual,
+                                      const Gains& gains) {
+         RateCommand command = then(manual, gains);
          command.thrust_sp = manual.z > 0.9f ? 0.9f : manual.z;
          return command;
-       };
+       });
      }},
     {"nan-thrust-no-p",
      "robustness",
@@ -68,10 +69,11 @@ const Fault robustness_list[] = {
      "a NaN thrust",
      "NaN handling",
      [](FaultyLaw& law) {
-       law.rate.throttle_attenuation = [](float thrust, const RateGains& gains) {
-         const float factor = RateStages::Law::throttle_attenuation(thrust, gains);
-         return std::isnan(thrust) ? 0.0f : factor;
-       };
+       change_stage(law.rate.throttle_attenuation,
+                    [](const auto& then, float thrust, const RateGains& gains) {
+                      const float factor = then(thrust, gains);
+                      return std::isnan(thrust) ? 0.0f : factor;
+                    });
      },
      {},
      mc_att_control::from_v1_5_5},

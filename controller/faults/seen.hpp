@@ -18,17 +18,17 @@ struct Seen {
 // Records the error, the attenuation and dt, which are not arguments of the later stages.
 inline std::shared_ptr<Seen> watch(FaultyLaw& law) {
   auto seen = std::make_shared<Seen>();
-  law.rate.proportional = [seen, then = law.rate.proportional](
-                              const Vector& error, float attenuation, const RateGains& gains) {
+  change_stage(law.rate.proportional, [seen](const auto& then, const Vector& error,
+                                             float attenuation, const RateGains& gains) {
     seen->error = error;
     seen->attenuation = attenuation;
     return then(error, attenuation, gains);
-  };
-  law.rate.derivative = [seen, then = law.rate.derivative](const Vector& prev, const Vector& rates,
-                                                           float dt, const RateGains& gains) {
+  });
+  change_stage(law.rate.derivative, [seen](const auto& then, const Vector& prev,
+                                           const Vector& rates, float dt, const RateGains& gains) {
     seen->dt_s = dt;
     return then(prev, rates, dt, gains);
-  };
+  });
   return seen;
 }
 
@@ -40,12 +40,12 @@ struct ControlTerms {
 // Changes the terms before they are added. Change is void(ControlTerms&).
 template <typename Change>
 void change_terms(FaultyLaw& law, Change change) {
-  law.rate.control = [change, then = law.rate.control](const Vector& p, const Vector& d,
-                                                       const Vector& i, const Vector& ff) {
+  change_stage(law.rate.control, [change](const auto& then, const Vector& p, const Vector& d,
+                                          const Vector& i, const Vector& ff) {
     ControlTerms terms{p, d, i, ff};
     change(terms);
     return then(terms.p, terms.d, terms.i, terms.ff);
-  };
+  });
 }
 
 }  // namespace attest::faults

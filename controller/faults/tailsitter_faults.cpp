@@ -11,20 +11,21 @@ using Stages = RecoveryStages::Law;
 
 template <typename Change>
 void change_tilt(FaultyLaw& law, Change change) {
-  law.recovery.tilt = [change](const Quaternion& q, const Quaternion& q_sp) {
-    RecoveryTilt tilt = Stages::tilt(q, q_sp);
-    change(tilt);
-    return tilt;
-  };
+  change_stage(law.recovery.tilt,
+               [change](const auto& then, const Quaternion& q, const Quaternion& q_sp) {
+                 RecoveryTilt tilt = then(q, q_sp);
+                 change(tilt);
+                 return tilt;
+               });
 }
 
 template <typename Change>
 void change_optimal(FaultyLaw& law, Change change) {
-  law.recovery.optimal_rates = [change](const RecoveryTilt& tilt) {
-    Vector rates = Stages::optimal_rates(tilt);
+  change_stage(law.recovery.optimal_rates, [change](const auto& then, const RecoveryTilt& tilt) {
+    Vector rates = then(tilt);
     change(rates);
     return rates;
-  };
+  });
 }
 
 const Fault tailsitter_list[] = {
@@ -101,13 +102,14 @@ const Fault tailsitter_list[] = {
     {"recovery-yaw-unclamped", "tailsitter", Stage::recovery, "does not clamp yaw to 1 rad/s",
      "a large yaw error below 5 deg of tilt", "missing clamp",
      [](FaultyLaw& law) {
-       law.recovery.quaternion_rates = [](const Quaternion& q, const Quaternion& q_sp,
-                                          const AttitudeGains& gains) {
-         Vector rates = Stages::quaternion_rates(q, q_sp, gains);
-         const Quaternion e = mc_att_control::product(mc_att_control::conjugate(q_sp), q);
-         rates[2] = gains.proportional_1_s[2] * e.z() * (e.w() > 0 ? -2.0f : 2.0f);
-         return rates;
-       };
+       change_stage(
+           law.recovery.quaternion_rates, [](const auto& then, const Quaternion& q,
+                                             const Quaternion& q_sp, const AttitudeGains& gains) {
+             Vector rates = then(q, q_sp, gains);
+             const Quaternion e = mc_att_control::product(mc_att_control::conjugate(q_sp), q);
+             rates[2] = gains.proportional_1_s[2] * e.z() * (e.w() > 0 ? -2.0f : 2.0f);
+             return rates;
+           });
      }},
     {"recovery-longer-way", "tailsitter", Stage::recovery, "ignores the sign of w",
      "the other quaternion of an attitude", "quaternion order",

@@ -59,10 +59,11 @@ const Fault timing_list[] = {
     {"dt-nominal", "timing", Stage::timing, "uses the first period as dt in all steps",
      "jitter, or a dropped tick", "a fixed rate",
      [](FaultyLaw& law) {
-       law.step.step_time = [n = 0, dt = 0.0f](std::uint64_t now, std::uint64_t last) mutable {
-         if (n++ < 2) dt = StepStages::Law::step_time(now, last);
+       change_stage(law.step.step_time, [n = 0, dt = 0.0f](const auto& then, std::uint64_t now,
+                                                           std::uint64_t last) mutable {
+         if (n++ < 2) dt = then(now, last);
          return dt;
-       };
+       });
      }},
     {"dt-first-is-minimum", "timing", Stage::timing, "uses 2 ms as dt in the first step",
      "the first step", "initial state",
@@ -73,9 +74,10 @@ const Fault timing_list[] = {
      }},
     {"dt-one-late", "timing", Stage::timing, "uses the previous period", "jitter", "one-tick delay",
      [](FaultyLaw& law) {
-       law.step.step_time = [dt = 0.02f](std::uint64_t now, std::uint64_t last) mutable {
-         return std::exchange(dt, StepStages::Law::step_time(now, last));
-       };
+       change_stage(law.step.step_time,
+                    [dt = 0.02f](const auto& then, std::uint64_t now, std::uint64_t last) mutable {
+                      return std::exchange(dt, then(now, last));
+                    });
      }},
     {"dt-in-ms", "timing", Stage::timing, "counts whole milliseconds", "333 Hz, or jitter",
      "integer division",
@@ -137,11 +139,12 @@ const Fault timing_list[] = {
      }},
     {"dt-filtered", "timing", Stage::timing, "low-passes dt", "jitter", "a helpful extra",
      [](FaultyLaw& law) {
-       law.step.step_time = [dt = 0.0f](std::uint64_t now, std::uint64_t last) mutable {
-         const float fresh = StepStages::Law::step_time(now, last);
-         dt = dt == 0 || last == 0 ? fresh : dt + 0.25f * (fresh - dt);
-         return dt;
-       };
+       change_stage(law.step.step_time,
+                    [dt = 0.0f](const auto& then, std::uint64_t now, std::uint64_t last) mutable {
+                      const float fresh = then(now, last);
+                      dt = dt == 0 || last == 0 ? fresh : dt + 0.25f * (fresh - dt);
+                      return dt;
+                    });
      }},
 };
 

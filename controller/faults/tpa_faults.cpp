@@ -49,9 +49,10 @@ const Fault tpa_list[] = {
      "thrust above the break", "a misplaced factor",
      [](FaultyLaw& law) {
        auto seen = watch(law);
-       law.rate.growth = [seen](V error, float dt, const RateGains& gains) {
-         return RateStages::Law::growth(error * seen->attenuation, dt, gains);
-       };
+       change_stage(law.rate.growth,
+                    [seen](const auto& then, V error, float dt, const RateGains& gains) {
+                      return then(error * seen->attenuation, dt, gains);
+                    });
      }},
     {"tpa-negative", "tpa", Stage::tpa, "lets the factor become negative", "a steep slope",
      "missing clamp",
@@ -99,19 +100,21 @@ const Fault tpa_list[] = {
     {"tpa-late", "tpa", Stage::tpa, "attenuates by the thrust of the previous step",
      "thrust that changes above the break", "one-tick delay",
      [](FaultyLaw& law) {
-       law.rate.throttle_attenuation = [last = 0.0f](float thrust, const RateGains& gains) mutable {
-         std::swap(last, thrust);
-         return RateStages::Law::throttle_attenuation(thrust, gains);
-       };
+       change_stage(law.rate.throttle_attenuation,
+                    [last = 0.0f](const auto& then, float thrust, const RateGains& gains) mutable {
+                      std::swap(last, thrust);
+                      return then(thrust, gains);
+                    });
      }},
     {"tpa-yaw-spared", "tpa", Stage::tpa, "does not attenuate yaw", "thrust above the break",
      "wrong axis",
      [](FaultyLaw& law) {
-       law.rate.proportional = [](V error, float attenuation, const RateGains& gains) {
-         Vector p = RateStages::Law::proportional(error, attenuation, gains);
-         p[2] = gains.proportional[2] * error[2];
-         return p;
-       };
+       change_stage(law.rate.proportional,
+                    [](const auto& then, V error, float attenuation, const RateGains& gains) {
+                      Vector p = then(error, attenuation, gains);
+                      p[2] = gains.proportional[2] * error[2];
+                      return p;
+                    });
      }},
     {"tpa-by-current-thrust", "tpa", Stage::tpa, "attenuates by this step's thrust",
      "thrust that changes", "a wrong input", [](FaultyLaw& law) { (void)law; },

@@ -21,18 +21,20 @@ void change_feed_forward(FaultyLaw& law, FeedForward feed_forward) {
 // Applies the weather-vane's clamp once: after the feed-forward if `after`, otherwise before it.
 void clamp_once(FaultyLaw& law, bool after) {
   auto fed = std::make_shared<bool>(false);
-  law.attitude.limit = [fed](V rates_sp, bool autonomous, const AttitudeGains& gains) {
-    *fed = false;
-    return AttitudeStages::Law::limit(rates_sp, autonomous, gains);
-  };
-  law.attitude.yaw_feed_forward = [fed](float yaw, float rate, float weight,
-                                        const AttitudeGains& gains) {
+  change_stage(law.attitude.limit,
+               [fed](const auto& then, V rates_sp, bool autonomous, const AttitudeGains& gains) {
+                 *fed = false;
+                 return then(rates_sp, autonomous, gains);
+               });
+  change_stage(law.attitude.yaw_feed_forward, [fed](const auto& then, float yaw, float rate,
+                                                    float weight, const AttitudeGains& gains) {
     *fed = true;
-    return AttitudeStages::Law::yaw_feed_forward(yaw, rate, weight, gains);
-  };
-  law.attitude.weathervane_limit = [fed, after](float yaw, const AttitudeGains& gains) {
-    return *fed == after ? AttitudeStages::Law::weathervane_limit(yaw, gains) : yaw;
-  };
+    return then(yaw, rate, weight, gains);
+  });
+  change_stage(law.attitude.weathervane_limit,
+               [fed, after](const auto& then, float yaw, const AttitudeGains& gains) {
+                 return *fed == after ? then(yaw, gains) : yaw;
+               });
 }
 
 void freeze_yaw_by_its_flag(FaultyLaw& law) {
@@ -41,16 +43,16 @@ void freeze_yaw_by_its_flag(FaultyLaw& law) {
     int axis = 0;
   };
   auto turn = std::make_shared<Turn>();
-  law.rate.may_integrate = [turn](float thrust_sp, const MotorLimits& limits) {
-    *turn = {limits.yaw, 0};
-    return RateStages::Law::may_integrate(thrust_sp, limits);
-  };
-  law.rate.integrate_axis = [turn](float integral, float control, float thrust_sp, float growth,
-                                   bool frozen) {
+  change_stage(law.rate.may_integrate,
+               [turn](const auto& then, float thrust_sp, const MotorLimits& limits) {
+                 *turn = {limits.yaw, 0};
+                 return then(thrust_sp, limits);
+               });
+  change_stage(law.rate.integrate_axis, [turn](const auto& then, float integral, float control,
+                                               float thrust_sp, float growth, bool frozen) {
     const bool is_yaw = turn->axis++ == 2;
-    return RateStages::Law::integrate_axis(integral, control, thrust_sp, growth,
-                                           frozen || (is_yaw && turn->yaw_limited));
-  };
+    return then(integral, control, thrust_sp, growth, frozen || (is_yaw && turn->yaw_limited));
+  });
 }
 
 // Attenuates P by thrust, as v1.5.5 does with its defaults: a break at full thrust, a slope of 1.
@@ -62,11 +64,11 @@ void attenuate_by_thrust(FaultyLaw& law) {
     if (mode.flag_control_manual_enabled != 0) *thrust = in.manual_control_setpoint.z;
     if (mode.flag_control_attitude_enabled != 0) *thrust = in.vehicle_attitude_setpoint.thrust;
   });
-  law.rate.proportional = [thrust](V error, float, RateGains gains) {
+  change_stage(law.rate.proportional, [thrust](const auto& then, V error, float, RateGains gains) {
     gains.tpa_break = gains.tpa_slope = 1;
     const float attenuation = RateStages::Law::throttle_attenuation(*thrust, gains);
-    return RateStages::Law::proportional(error, attenuation, gains);
-  };
+    return then(error, attenuation, gains);
+  });
 }
 
 void scale_by_battery(FaultyLaw& law) {
@@ -127,11 +129,12 @@ const Fault v1_3_4_list[] = {
      "a feed-forward gain and a setpoint at the start",
      "a helpful extra",
      [](FaultyLaw& law) {
-       law.rate.feed_forward_change = [is_first = true](V sp, V prev, float dt,
-                                                        const RateGains& gains) mutable {
-         const Vector before = std::exchange(is_first, false) ? Vector(sp) : Vector(prev);
-         return RateStages::Law::feed_forward_change(sp, before, dt, gains);
-       };
+       change_stage(
+           law.rate.feed_forward_change, [is_first = true](const auto& then, V sp, V prev, float dt,
+                                                           const RateGains& gains) mutable {
+             const Vector before = std::exchange(is_first, false) ? Vector(sp) : Vector(prev);
+             return then(sp, before, dt, gains);
+           });
      },
      {},
      only_v1_3_4},
@@ -163,9 +166,10 @@ const Fault v1_3_4_list[] = {
      "an auto mode without velocity control",
      "another version",
      [](FaultyLaw& law) {
-       law.step.is_autonomous = [](const decltype(Topics::mode)& mode, Profile) {
-         return StepStages::Law::is_autonomous(mode, Profile::px4_v1_5_5);
-       };
+       change_stage(law.step.is_autonomous,
+                    [](const auto& then, const decltype(Topics::mode)& mode, Profile) {
+                      return then(mode, Profile::px4_v1_5_5);
+                    });
      },
      {},
      only_v1_3_4},

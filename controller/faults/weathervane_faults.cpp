@@ -14,15 +14,16 @@ void change_weathervane(FaultyLaw& law, Flag flag) {
 // Applies the weather-vane's limit without its reset of the integral.
 void limit_without_reset(FaultyLaw& law) {
   auto vaning = std::make_shared<bool>(false);
-  law.step.is_weathervaning = [vaning](bool autonomous, const Setpoint& setpoint) {
-    *vaning = StepStages::Law::is_weathervaning(autonomous, setpoint);
-    return false;
-  };
-  law.attitude.yaw_feed_forward = [vaning](float yaw, float rate, float w,
-                                           const AttitudeGains& gains) {
-    const float fed = AttitudeStages::Law::yaw_feed_forward(yaw, rate, w, gains);
+  change_stage(law.step.is_weathervaning,
+               [vaning](const auto& then, bool autonomous, const Setpoint& setpoint) {
+                 *vaning = then(autonomous, setpoint);
+                 return false;
+               });
+  change_stage(law.attitude.yaw_feed_forward, [vaning](const auto& then, float yaw, float rate,
+                                                       float w, const AttitudeGains& gains) {
+    const float fed = then(yaw, rate, w, gains);
     return *vaning ? AttitudeStages::Law::weathervane_limit(fed, gains) : fed;
-  };
+  });
 }
 
 void limit_to(FaultyLaw& law, float (*bound)(const AttitudeGains&)) {
@@ -99,42 +100,47 @@ const Fault weathervane_list[] = {
      "weather-vaning with a commanded yaw rate", "misplaced clamp",
      [](FaultyLaw& law) {
        auto vaning = std::make_shared<bool>(false);
-       law.step.is_weathervaning = [vaning](bool autonomous, const Setpoint& setpoint) {
-         return *vaning = StepStages::Law::is_weathervaning(autonomous, setpoint);
-       };
+       change_stage(law.step.is_weathervaning,
+                    [vaning](const auto& then, bool autonomous, const Setpoint& setpoint) {
+                      return *vaning = then(autonomous, setpoint);
+                    });
        law.attitude.weathervane_limit = [](float yaw, const AttitudeGains&) { return yaw; };
-       law.attitude.yaw_feed_forward = [vaning](float yaw, float rate, float w,
-                                                const AttitudeGains& gains) {
+       change_stage(law.attitude.yaw_feed_forward, [vaning](const auto& then, float yaw, float rate,
+                                                            float w, const AttitudeGains& gains) {
          const float limited = *vaning ? AttitudeStages::Law::weathervane_limit(yaw, gains) : yaw;
-         return AttitudeStages::Law::yaw_feed_forward(limited, rate, w, gains);
-       };
+         return then(limited, rate, w, gains);
+       });
      }},
     {"vane-resets-all", "weathervane", Stage::weathervane, "resets all integrals",
      "weather-vaning after roll was integrated", "wrong axis",
      [](FaultyLaw& law) {
        auto vaning = std::make_shared<bool>(false);
-       law.step.is_weathervaning = [vaning](bool autonomous, const Setpoint& setpoint) {
-         return *vaning = StepStages::Law::is_weathervaning(autonomous, setpoint);
-       };
-       law.rate.integrate_axis = [vaning](float integral, float control, float thrust, float growth,
-                                          bool frozen) {
-         const float kept = *vaning ? 0.0f : integral;
-         return RateStages::Law::integrate_axis(kept, control, thrust, growth, frozen);
-       };
+       change_stage(law.step.is_weathervaning,
+                    [vaning](const auto& then, bool autonomous, const Setpoint& setpoint) {
+                      return *vaning = then(autonomous, setpoint);
+                    });
+       change_stage(law.rate.integrate_axis,
+                    [vaning](const auto& then, float integral, float control, float thrust,
+                             float growth, bool frozen) {
+                      const float kept = *vaning ? 0.0f : integral;
+                      return then(kept, control, thrust, growth, frozen);
+                    });
      }},
     {"vane-freezes-yaw", "weathervane", Stage::weathervane,
      "holds the yaw integral at 0 within the step", "weather-vaning with a yaw rate error",
      "order of stages",
      [](FaultyLaw& law) {
        auto vaning = std::make_shared<bool>(false);
-       law.step.is_weathervaning = [vaning](bool autonomous, const Setpoint& setpoint) {
-         return *vaning = StepStages::Law::is_weathervaning(autonomous, setpoint);
-       };
-       law.rate.growth = [vaning](const Vector& error, float dt, const RateGains& gains) {
-         Vector growth = RateStages::Law::growth(error, dt, gains);
+       change_stage(law.step.is_weathervaning,
+                    [vaning](const auto& then, bool autonomous, const Setpoint& setpoint) {
+                      return *vaning = then(autonomous, setpoint);
+                    });
+       change_stage(law.rate.growth, [vaning](const auto& then, const Vector& error, float dt,
+                                              const RateGains& gains) {
+         Vector growth = then(error, dt, gains);
          if (*vaning) growth[2] = 0;
          return growth;
-       };
+       });
      }},
 };
 

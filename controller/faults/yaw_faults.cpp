@@ -87,13 +87,14 @@ const Fault yaw_list[] = {
      "a tilted vehicle with a yaw error", "a missing step",
      [](FaultyLaw& law) {
        auto third = std::make_shared<float>(0.0f);
-       law.attitude.nose_after_tilt = [third](const Matrix& R, const Tilt& tilt) {
-         *third = tilt.rotation_B[2];
-         return AttitudeStages::Law::nose_after_tilt(R, tilt);
-       };
-       law.attitude.yaw_error = [third](const Vector& nose, const Matrix& R_WD, float weight) {
-         return AttitudeStages::Law::yaw_error(nose, R_WD, weight) + *third;
-       };
+       change_stage(law.attitude.nose_after_tilt,
+                    [third](const auto& then, const Matrix& R, const Tilt& tilt) {
+                      *third = tilt.rotation_B[2];
+                      return then(R, tilt);
+                    });
+       change_stage(law.attitude.yaw_error,
+                    [third](const auto& then, const Vector& nose, const Matrix& R_WD,
+                            float weight) { return then(nose, R_WD, weight) + *third; });
      },
      "z x z_sp is normal to z, so the component of R^T (z x z_sp) along the body's z is a rounding "
      "error"},
