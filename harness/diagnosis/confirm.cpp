@@ -21,6 +21,10 @@ constexpr double most_farther = 0.15, most_farther_at_first = 0.5;
 // may act at the same step.
 constexpr double most_wrong_at_first = 3;
 
+// Vectors in which the suspect is right where it first acts. So many confirm it although later
+// places hold a second mistake, if it is wrong in at most half as many.
+constexpr double enough_right_at_first = 2;
+
 // How all suspects together agree with the port where one of them acts. Places are outputs of
 // vectors, as in Score.
 struct Confirmation {
@@ -55,7 +59,12 @@ struct Confirmation {
     const double most = at_last ? most_farther : most_farther_at_first;
     if (needed == 0 || farther > most * (nearer + farther)) return true;
     const double least = needed < enough_needed ? least_confirmed : least_confirmed_often;
-    return at_last && (share() < least || wrong_at_first > most_wrong_at_first * right_at_first);
+    const bool is_confirmed = share() >= least || is_right_at_first();
+    return at_last && (!is_confirmed || wrong_at_first > most_wrong_at_first * right_at_first);
+  }
+
+  bool is_right_at_first() const {
+    return right_at_first >= enough_right_at_first && 2 * wrong_at_first <= right_at_first;
   }
 
   double refutation() const { return 1 - share() + 2 * farther / std::max(1.0, nearer + farther); }

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
-#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -58,7 +57,12 @@ class HandMade {
   }
   // In these vectors a mistake that is no fault deviates a tick before all faults.
   HandMade& deviates_before(std::size_t first, std::size_t end) {
-    for (std::size_t v = first; v < end; ++v) before_.insert(v);
+    for (std::size_t v = first; v < end; ++v) parts_[v] = 0;
+    return *this;
+  }
+  // In these vectors a mistake that is no fault deviates a tick after all faults.
+  HandMade& deviates_after(std::size_t first, std::size_t end) {
+    for (std::size_t v = first; v < end; ++v) parts_[v] = 2;
     return *this;
   }
   HandMade& deviates_first(std::size_t vector, Stage stage) {
@@ -111,7 +115,7 @@ class HandMade {
         one.misfit += std::log2(1 + std::abs(sum[i] - port_[v][i]));
       }
       if (one.deviating != 0) one.acts = 1;
-      if (one.parted != 0) one.parts = before_.contains(v) ? 0 : 1;
+      if (one.parted != 0) one.parts = parts_.contains(v) ? parts_.at(v) : 1;
       one.matched = one.parted == 0 ? 1 : 0;
       vector.similarities.push_back(one);
     }
@@ -122,7 +126,7 @@ class HandMade {
   std::map<std::string_view, std::vector<Vector>> effects_;
   std::vector<Vector> port_;
   std::map<std::size_t, Stage> stages_;
-  std::set<std::size_t> before_;
+  std::map<std::size_t, std::size_t> parts_;  // the tick at which port and faults part
   std::map<std::string_view, std::string_view> replaces_;
 };
 

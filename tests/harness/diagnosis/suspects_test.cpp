@@ -258,6 +258,14 @@ TEST(Several, AFaultThatIsMostlyWrongWhereItFirstActsIsNotNamed) {
       << "another mistake may be the cause";
 }
 
+// In most of its vectors a second mistake changes the same output, one tick later.
+TEST(Several, AFaultThatIsRightWhereItFirstActsIsNamed) {
+  HandMade port(5, 0);
+  port.acts(yaw_fault, 0, 5, 0, 4).has(yaw_fault).differs(2, 5, 0, 3);
+  EXPECT_THAT(suspected(*port.diagnosed()), IsEmpty());
+  EXPECT_THAT(suspected(*port.deviates_after(2, 5).diagnosed()), ElementsAre(yaw_fault));
+}
+
 // Without the pair, this fault has the port's values in one vector by chance.
 TEST(Several, AFaultThatTheOthersMakeSuperfluousIsDropped) {
   const auto found = HandMade(8, 0)
