@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <string>
 #include <utility>
@@ -104,23 +105,22 @@ bool same_bytes(const Outputs& a, const Outputs& b) {
   return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Answer)) == 0;
 }
 
-// The ids of the faults of the profile's law: "a+b".
-std::string ids_in(const Hypothesis& hypothesis, const std::string& profile) {
-  std::string ids;
-  for (const faults::Fault* fault : hypothesis) {
-    if (!fault->profiles->is_of_law_of(profile)) continue;
-    ids += (ids.empty() ? "" : "+") + std::string(fault->id);
-  }
-  return ids;
+// The faults of the profile's law.
+Hypothesis of_law(const Hypothesis& hypothesis, const std::string& profile) {
+  Hypothesis faults;
+  std::ranges::copy_if(hypothesis, std::back_inserter(faults), [&](const faults::Fault* fault) {
+    return fault->profiles->is_of_law_of(profile);
+  });
+  return faults;
 }
 
 // Empty if the faults cannot run.
-Outputs outputs_with(const std::string& ids, Trace given, const ModuleUnderTest& subject) {
-  if (ids.empty()) {
+Outputs outputs_with(const Hypothesis& faults, Trace given, const ModuleUnderTest& subject) {
+  if (faults.empty()) {
     const auto law = reference_outputs(subject, std::move(given));
     return law ? outputs_of(*law) : Outputs{};
   }
-  return drive(**open_fault(ids), subject, given) ? Outputs{} : outputs_of(given);
+  return drive(*open_faults(faults), subject, given) ? Outputs{} : outputs_of(given);
 }
 
 }  // namespace
@@ -191,12 +191,12 @@ std::size_t index_in_catalogue(const faults::Fault& fault) {
 FaultAnswers answers_of(std::span<const Hypothesis> hypotheses, const Trace& given,
                         const ModuleUnderTest& subject) {
   FaultAnswers answers;
-  std::map<std::string, std::size_t> known_ids;
+  std::map<Hypothesis, std::size_t> known_faults;
   for (const Hypothesis& hypothesis : hypotheses) {
-    const std::string ids = ids_in(hypothesis, subject.profile);
-    const auto [place, is_new] = known_ids.try_emplace(ids);
+    const Hypothesis faults = of_law(hypothesis, subject.profile);
+    const auto [place, is_new] = known_faults.try_emplace(faults);
     if (is_new) {
-      Outputs outputs = outputs_with(ids, given, subject);
+      Outputs outputs = outputs_with(faults, given, subject);
       const auto known = std::find_if(answers.distinct.begin(), answers.distinct.end(),
                                       [&](const Outputs& one) { return same_bytes(one, outputs); });
       place->second = static_cast<std::size_t>(known - answers.distinct.begin());

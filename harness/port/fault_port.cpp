@@ -79,10 +79,17 @@ class FaultyBattery final : public UnitOf<attest_battery_inputs, attest_battery_
 
 class FaultPort final : public Port {
  public:
-  FaultPort(std::string ids, std::vector<const Fault*> faults, std::optional<int> fraction_bits)
-      : ids_(std::move(ids)), faults_(std::move(faults)), fraction_bits_(fraction_bits) {}
+  FaultPort(std::vector<const Fault*> faults, std::optional<int> fraction_bits)
+      : faults_(std::move(faults)), fraction_bits_(fraction_bits) {}
 
-  std::string name() const override { return "fault " + ids_; }
+  std::string name() const override {
+    std::string name = "fault ";
+    for (const Fault* fault : faults_) {
+      if (fault != faults_.front()) name += '+';
+      name += fault->id;
+    }
+    return name;
+  }
   std::string version() const override { return "of the catalogue"; }
   std::optional<int> fraction_bits() const override { return fraction_bits_; }
   ModuleSet modules() const override { return ModuleSet().set(); }
@@ -121,7 +128,6 @@ class FaultPort final : public Port {
     return std::make_unique<FaultyMixer>(*parsed, faults::law_with(faults_).mixer);
   }
 
-  std::string ids_;
   std::vector<const Fault*> faults_;
   std::optional<int> fraction_bits_;
 };
@@ -143,7 +149,12 @@ Result<std::unique_ptr<Port>> open_fault(std::string_view ids, std::optional<int
     faults.push_back(fault);
     at = end + 1;
   }
-  return std::make_unique<FaultPort>(std::string(ids), std::move(faults), fraction_bits);
+  return open_faults(std::move(faults), fraction_bits);
+}
+
+std::unique_ptr<Port> open_faults(std::vector<const Fault*> faults,
+                                  std::optional<int> fraction_bits) {
+  return std::make_unique<FaultPort>(std::move(faults), fraction_bits);
 }
 
 }  // namespace attest

@@ -5,7 +5,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "controller/faults/fault.hpp"
 #include "harness/port/port.hpp"
 
 namespace attest {
@@ -15,5 +17,8 @@ namespace attest {
 // nearest known one.
 Result<std::unique_ptr<Port>> open_fault(std::string_view ids,
                                          std::optional<int> fraction_bits = std::nullopt);
+
+std::unique_ptr<Port> open_faults(std::vector<const faults::Fault*> faults,
+                                  std::optional<int> fraction_bits = std::nullopt);
 
 }  // namespace attest
