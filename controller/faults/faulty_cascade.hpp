@@ -7,6 +7,18 @@
 #include "controller/cascade/attitude_unit.hpp"
 #include "controller/cascade/rate_unit.hpp"
 
+// Compiled once, in attest_cascade: the catalogue only takes their addresses.
+namespace attest::cascade {
+
+extern template struct AttitudeStages<float>;
+extern template struct AttitudeStepStages<float>;
+extern template struct RateStages<float>;
+extern template struct RateStepStages<float>;
+extern template struct ReferenceModelStages<float>;
+extern template struct StickStages<float>;
+
+}  // namespace attest::cascade
+
 namespace attest::faults {
 
 using Scalar = float;

@@ -17,6 +17,15 @@
 #include "controller/faults/faulty_cascade.hpp"
 #include "controller/mc_att_control/mc_att_control.hpp"
 
+// Compiled once, in attest_mc_att_control.
+namespace attest::mc_att_control {
+
+extern template struct AttitudeStages<float>;
+extern template struct RateStages<float>;
+extern template struct StepStages<float>;
+
+}  // namespace attest::mc_att_control
+
 namespace attest::faults {
 
 using Matrix = mc_att_control::Matrix3<Scalar>;

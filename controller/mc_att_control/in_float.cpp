@@ -8,5 +8,9 @@ template class AttitudeControl<float>;
 template class RateControl<float>;
 template struct RecoveryStages<float>;
 template class McAttControl<float>;
+// Of the catalogue of faults (controller/faults), which takes their addresses.
+template struct AttitudeStages<float>;
+template struct RateStages<float>;
+template struct StepStages<float>;
 
 }  // namespace attest::mc_att_control
