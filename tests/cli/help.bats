@@ -106,11 +106,15 @@ commands=(run hunt replay sim stress sweep sweep-rate schedule time compare plot
   [ "$(sort -u <<<"$documented")" = "$(printf '%s\n' $read TMPDIR | sort -u)" ]
 }
 
-# completed WORDS...: what the last of these words of a command line can become.
+# completed WORDS...: what the last of these words of a command line can become. Without the trap
+# with which bats follows each command, because it takes seconds for lists of all cases.
 completed() {
-  COMP_WORDS=("$@") COMP_CWORD=$(($# - 1))
-  PATH=$(dirname "$ATTEST"):$PATH _attest || true # its status is that of compgen
-  output=$(printf '%s\n' "${COMPREPLY[@]}" | sort -u | xargs)
+  output=$(
+    trap - DEBUG
+    COMP_WORDS=("$@") COMP_CWORD=$(($# - 1))
+    PATH=$(dirname "$ATTEST"):$PATH _attest || true # its status is that of compgen
+    printf '%s\n' "${COMPREPLY[@]}" | sort -u | xargs
+  )
 }
 
 @test "bash completes commands, options, fixed values and names of the suite" {
