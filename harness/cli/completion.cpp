@@ -156,7 +156,7 @@ std::vector<std::string> names_of(const CLI::Option& option) {
 std::string value_lines(const CLI::App& app, const CLI::App& command) {
   std::string lines;
   for (const CLI::Option* option : command.get_options()) {
-    if (option->get_positional() || option->get_items_expected_max() == 0) continue;
+    if (!option->nonpositional() || option->get_items_expected_max() == 0) continue;
     std::vector<std::string> patterns;
     for (const std::string& each : names_of(*option)) {
       patterns.push_back(fmt::format("\"{} {}\"", command.get_name(), each));

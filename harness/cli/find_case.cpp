@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
-#include <set>
 
 #include <fmt/format.h>
 
 #include "harness/casefile/parse.hpp"
 #include "harness/casefile/select.hpp"
 #include "harness/core/suite_files.hpp"
+#include "harness/port/profiles.hpp"
 
 namespace attest::cli {
 namespace {
@@ -32,13 +32,18 @@ Result<Case> find_case(const std::string& name, const SuiteFolder& suite,
   auto found = select_cases(suite.case_folders(), selection);
   if (!found) return tl::unexpected(found.error());
   if (rate) keep_law(*rate, *found);
-  // A file with several profiles gives the case of its first profile.
-  std::set<std::filesystem::path> files;
-  for (const SelectedCase& one : *found) files.insert(one.the_case.file);
   const Case& first = found->front().the_case;
-  if (files.size() == 1) return found->size() == 1 ? first : first.in_profile(first.profiles[0]);
-  return fail(fmt::format("`{}` matches {} cases, for example {} and {}; give the id of one", name,
-                          found->size(), (*found)[0].the_case.id(), (*found)[1].the_case.id()));
+  for (const SelectedCase& one : *found) {
+    if (one.the_case.group == first.group && one.the_case.name == first.name) continue;
+    return fail(fmt::format("`{}` matches {} cases, for example {} and {}; give the id of one",
+                            name, found->size(), first.id(), one.the_case.id()));
+  }
+  const std::vector<std::string> profiles = known_profile_names();
+  return std::ranges::min_element(*found, {},
+                                  [&](const SelectedCase& one) {
+                                    return std::ranges::find(profiles, one.the_case.profile);
+                                  })
+      ->the_case;
 }
 
 Result<PlantConfiguration> find_plant_configuration(const Case& the_case,
@@ -67,7 +72,8 @@ Result<Case> find_flight(const std::string& name, const LoopRate& rate, const Su
 Result<Case> find_open_loop_case(const std::string& name, const SuiteFolder& suite) {
   auto the_case = find_case(name, suite, std::nullopt);
   if (the_case && the_case->flight) {
-    return fail_at(the_case->file.string(), "is a flight; `attest sim` flies it");
+    return fail_at(the_case->file.string(),
+                   "is a flight; `attest sim --out F` flies it and writes its trace");
   }
   return the_case;
 }

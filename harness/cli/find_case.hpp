@@ -11,13 +11,14 @@
 
 namespace attest::cli {
 
-// `name` is a case file, or the name, pattern or id of exactly one case. A file with several
-// profiles gives the case of its first profile, unless `name` is an id with another profile. If
-// flights of both laws match, the law that flies at `rate` is chosen: the cascade at a pair of
-// rates, else the controller. Errors: the case is not a flight; no case or several cases match.
+// `name` is a case file, or the name, pattern or id of one case. A name that several profiles have
+// is that of the first of them in the order of known_profile_names(), where the newest profile of a
+// law is its first; a case file gives that of its folder. If flights of both laws match, the law
+// that flies at `rate` is chosen: the cascade at a pair of rates, else the controller. Errors: the
+// case is not a flight; no case matches; cases with different names match.
 Result<Case> find_flight(const std::string& name, const LoopRate& rate, const SuiteFolder& suite);
 
-// The same for a case in open loop. Errors: the case is a flight; no case or several cases match.
+// The same for a case in open loop, of any law. Errors: the case is a flight; the others above.
 Result<Case> find_open_loop_case(const std::string& name, const SuiteFolder& suite);
 
 // The flight with its vehicle and plant. Empty texts select the case's lead vehicle and first

@@ -65,7 +65,7 @@ std::string option_text(const CLI::Option& option) {
   for (const std::string& name : option.get_snames()) names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
   if (names.empty()) names.push_back(value_name(option));
-  const bool has_value = option.get_items_expected_max() > 0 && !option.get_positional();
+  const bool has_value = option.get_items_expected_max() > 0 && option.nonpositional();
   std::string text = fmt::format(
       ".TP\n\\fB{}\\fR{}\n{}\n", roff(fmt::format("{}", fmt::join(names, ", "))),
       has_value ? " \\fI" + roff(value_name(option)) + "\\fR" : "", roff(option.get_description()));
@@ -76,10 +76,12 @@ std::string option_text(const CLI::Option& option) {
 
 std::string options_text(const CLI::App& command) {
   std::string text = ".SH OPTIONS\n";
-  for (const CLI::Option* option : positionals_of(command)) text += option_text(*option);
+  for (const CLI::Option* option : positionals_of(command)) {
+    if (!option->nonpositional()) text += option_text(*option);
+  }
   for (const std::string& group : command.get_groups()) {
     const auto options = command.get_options([&](const CLI::Option* option) {
-      return option->get_group() == group && !option->get_positional();
+      return option->get_group() == group && option->nonpositional();
     });
     if (group.empty() || options.empty()) continue;
     if (group != "Options") text += fmt::format(".SS {}\n", roff(group));

@@ -21,9 +21,19 @@ struct RecordOptions {
   std::string case_name, rate, out = "-";
 };
 
+// The case of the same name in the first profile that has it and that the port supports; else
+// `the_case`.
+Case case_of_port(const RecordOptions& options, Case the_case, const SuiteFolder& suite) {
+  for (const std::string& id : ids_for_port(options.case_name, the_case, options.host)) {
+    if (auto other = find_open_loop_case(id, suite)) return *std::move(other);
+  }
+  return the_case;
+}
+
 Result<Trace> recorded(const RecordOptions& options, const SuiteFolder& suite) {
-  const auto the_case = find_open_loop_case(options.case_name, suite);
+  auto the_case = find_open_loop_case(options.case_name, suite);
   if (!the_case) return tl::unexpected(the_case.error());
+  the_case = case_of_port(options, *std::move(the_case), suite);
   const auto rate = Rate::parse(options.rate);
   if (!rate) return tl::unexpected(rate.error());
   if (auto few = check_ticks(*the_case, *rate); !few) return tl::unexpected(few.error());
@@ -66,11 +76,12 @@ void add_record(const CommandLine& line) {
   auto options = std::make_shared<RecordOptions>();
   const Command command =
       line.add("record", "Write the inputs and outputs of a port in one open-loop case as a trace");
-  command.option("case", options->case_name, "The case: its name or id, or a case file")
+  command.option("case,--case", options->case_name, "The case: its name or id, or a case file")
       .type("CASE")
       .required();
   command.option("--rate", options->rate, "The loop rate [Hz]").type("HZ").required();
   add_port(command, options->host);
+  add_port_argument(command, options->host);
   command
       .option(
           "--out", options->out,
@@ -80,10 +91,8 @@ void add_record(const CommandLine& line) {
       .type("F")
       .shows_default();
   add_timeout(command, options->host.timeout_s);
-  command.examples(
-      {{"attest record px4-v1.5.5/rates/p_alone --rate 250 --port lib:./libmine.so --out "
-        "mine.csv",
-        "write a trace for `attest plot`, `replay` or `compare`"}});
+  command.examples({{"attest record rates/p_alone ./libmine.so --rate 250 --out mine.csv",
+                     "write a trace for `attest plot`, `replay` or `compare`"}});
   command.runs(options, record_command);
 }
 

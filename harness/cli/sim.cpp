@@ -140,23 +140,20 @@ Result<std::vector<SimulatedFlight>> fly_all(const Sim& sim, const HostOptions& 
   return flights;
 }
 
-// The flight of a name without a profile, such as `hover` or `flight/hover`: that of the first
-// profile, in the order of known_profile_names(), that the port supports. Asks the port about every
-// profile. Empty: the name has a profile, or no profile of the port has such a flight.
-std::optional<Sim> flight_of_port(const SimOptions& options, const Globals& globals) {
-  constexpr std::string_view group = "flight/";
-  std::string_view name = options.case_name;
-  if (name.starts_with(group)) name.remove_prefix(group.size());
-  const bool is_bare = options.timing.empty() && options.rate.empty() &&
-                       name.find_first_of("/.*?[") == std::string_view::npos;
+// The flight of the same name in the first profile that has it and that the port supports. Empty:
+// there is no such profile, its law does not fly at --rate, or the flight is not chosen by a name
+// without a profile.
+std::optional<Sim> flight_of_port(const SimOptions& options, const Sim& sim,
+                                  const Globals& globals) {
   const auto suite = find_suite(globals.suite);
-  if (!is_bare || !suite) return std::nullopt;
-  const auto port = describe_port(options.host, known_profile_names());
-  if (!port) return std::nullopt;
-  for (const std::string& profile : port->profiles) {
+  if (!options.timing.empty() || !suite) return std::nullopt;
+  for (const std::string& id : ids_for_port(options.case_name, sim.the_case, options.host)) {
     SimOptions in_profile = options;
-    in_profile.case_name = fmt::format("{}/{}{}", profile, group, name);
-    if (auto sim = prepare_case(in_profile, *suite)) return *std::move(sim);
+    in_profile.case_name = id;
+    auto other = prepare_case(in_profile, *suite);
+    if (!other) continue;
+    const auto attitude_rate = other->configurations.front().rate.attitude_unit;
+    if (other->the_case.attitude_loop.has_value() == attitude_rate.has_value()) return *other;
   }
   return std::nullopt;
 }
@@ -247,7 +244,7 @@ int sim_command(const SimOptions& options, const Globals& globals) {
   const auto port = prepare_port(host, {sim->the_case.profile});
   if (!port) return report_error(port.error());
   if (port->profiles.empty() && port->hangs.empty() && port->goes_wrong.empty()) {
-    if (auto other = flight_of_port(options, globals)) sim = *std::move(other);
+    if (auto other = flight_of_port(options, *sim, globals)) sim = *std::move(other);
   }
   const auto simulation = simulate(*sim, host, *port, !options.html.empty());
   if (!simulation) return report_error(simulation.error());
@@ -290,7 +287,9 @@ void add_sim(const CommandLine& line) {
       line.add("sim",
                "Fly one case in simulation with a port, print the metrics, and write a trace or "
                "a page of the flight");
-  command.option("case", options->case_name, "The flight: the name or id of a case, or a case file")
+  command
+      .option("case,--case", options->case_name,
+              "The flight: the name or id of a case, or a case file")
       .type("CASE");
   command
       .option("--rate", options->rate,

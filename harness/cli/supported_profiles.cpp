@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/core/suite_files.hpp"
 #include "harness/port/profiles.hpp"
 #include "harness/report/text.hpp"
 
@@ -32,6 +33,18 @@ std::optional<Error> supported_instead(const HostOptions& host,
   return Error{fmt::format("{} supports {}, not {}; write: {}", host.port,
                            fmt::join(supported, ", "), fmt::join(missing, ", "),
                            command(supported.front(), " --port " + shell_word(host.port)))};
+}
+
+std::vector<std::string> ids_for_port(const std::string& name, const Case& the_case,
+                                      const HostOptions& host) {
+  if (is_suite_file(name) || name.starts_with(the_case.profile)) return {};
+  const auto port = describe_port(host, known_profile_names());
+  if (!port) return {};
+  std::vector<std::string> ids;
+  for (const std::string& profile : port->profiles) {
+    ids.push_back(fmt::format("{}/{}/{}", profile, the_case.group, the_case.name));
+  }
+  return ids;
 }
 
 std::vector<std::string> profiles_in(const std::vector<SelectedCase>& cases) {

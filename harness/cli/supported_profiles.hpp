@@ -22,6 +22,12 @@ std::optional<Error> supported_instead(const HostOptions& host,
                                        const std::vector<std::string>& missing,
                                        const CommandFor& command);
 
+// The ids of a case that was found by `name`, in the profiles that the port supports, in the order
+// of known_profile_names(). Asks the port about every profile. Empty if `name` is that of a file or
+// begins with the profile.
+std::vector<std::string> ids_for_port(const std::string& name, const Case& the_case,
+                                      const HostOptions& host);
+
 // Those of the cases, each once.
 std::vector<std::string> profiles_in(const std::vector<SelectedCase>& cases);
 

@@ -5,8 +5,8 @@ load common
 @test "a flight of the cascade is flown at a pair of rates, on both plants" {
   run "$ATTEST" sim hover --rate 250:1000 --plant all --html h.html
   [ "$status" -eq 0 ]
-  has "px4-v1.16.0/flight/hover@250-1000hz-iris-mujoco  3000 ticks"
-  has "px4-v1.16.0/flight/hover@250-1000hz-iris-ode  3000 ticks"
+  has "px4-v1.18/flight/hover@250-1000hz-iris-mujoco  3000 ticks"
+  has "px4-v1.18/flight/hover@250-1000hz-iris-ode  3000 ticks"
   grep -q "Torque setpoint" h.html
   run "$ATTEST" sim hover --rate 250:8000 --plant ode --out flown.csv
   [ "$status" -eq 0 ]
@@ -17,7 +17,7 @@ load common
   "$ATTEST" sim sticks --rate 100:400 --out flown.csv
   head -1 flown.csv | grep -q "out/rate_ctrl_status.rollspeed_integ"
   head -1 flown.attitude_unit.csv | grep -q "out/vehicle_attitude_setpoint.q_d"
-  run "$ATTEST" replay --profile px4-v1.16.0 --level exact flown.csv flown.attitude_unit.csv
+  run "$ATTEST" replay --profile px4-v1.18 --level exact flown.csv flown.attitude_unit.csv
   [ "$status" -eq 0 ]
 }
 
@@ -94,7 +94,7 @@ load common
   [[ $output =~ sample\ age\ at\ the\ command\ +60\ us\ +60\ us\ +60\ us ]]
   [[ $output =~ setpoint\ after\ the\ release\ +90\ us\ +90\ us\ +90\ us ]]
   [[ $output =~ sample\ age\ at\ the\ setpoint\ +890\ us\ +2\.41\ ms\ +2\.41\ ms ]]
-  has "px4-v1.16.0/flight/tilt_step_30"
+  has "px4-v1.18/flight/tilt_step_30"
   run "$ATTEST" run --timing timing.json
   [ "$status" -eq 0 ]
   has "PASS 1 vector passed, 0 failed"
@@ -125,8 +125,8 @@ open=(--duration 0.5 --policy other --no-cyclictest --misses-per-million 1000000
   run "$ATTEST" stress --case hover --rate 250:1000 "${open[@]}" --record-timing t.json \
     --json s.json --junit s.xml --html s.html
   [ "$status" -eq 0 ] || [[ $output == *"does not step the plant"* ]]
-  has "px4-v1.16.0/flight/hover@250-1000hz-iris-mujoco, rate unit"
-  has "px4-v1.16.0/flight/hover@250-1000hz-iris-mujoco, attitude unit"
+  has "px4-v1.18/flight/hover@250-1000hz-iris-mujoco, rate unit"
+  has "px4-v1.18/flight/hover@250-1000hz-iris-mujoco, attitude unit"
   has "of 1 rate hold in real time"
   grep -q "250:1000, attitude unit" s.html
   xmllint --noout --schema "$SOURCE/tests/harness/report/junit.xsd" s.xml

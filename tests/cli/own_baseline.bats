@@ -184,7 +184,9 @@ P
   "$ATTEST" record px4-v1.5.5/rates/p_alone --rate 250 | cmp - mine.csv
   run "$ATTEST" record px4-v1.5.5/flight/hover --rate 250
   [ "$status" -eq 2 ]
-  has "is a flight; \`attest sim\` flies it"
+  has "is a flight; \`attest sim --out F\` flies it"
+  run "$ATTEST" record --case p_alone "$STARTER" --rate 250
+  [ "$output" = "$(cat mine.csv)" ]
   run "$ATTEST" record px4-v1.5.5/rates/p_alone --rate 250 --port "lib:$PORTS/port_crash.so" \
     --out no.csv
   [ "$status" -eq 2 ]

@@ -341,6 +341,10 @@ not px4-v1.5.5; write: attest run --profile px4-v1.18 --port $port"
   done
   run "$ATTEST" sim hover "$port" --rate 250:500
   [ "$status" -eq 0 ]
+  has "px4-v1.18/flight/hover@250-500hz"
+  run "$ATTEST" record p_alone "$port" --rate 250 --out alone.csv
+  [ "$status" -eq 0 ]
+  head -1 alone.csv | grep -q out/rate_ctrl_status # of the rate unit
   run "$ATTEST" sim hover --rate 250 --port "$port"
   [ "$status" -eq 2 ]
   has "write: attest sim px4-v1.18/flight/hover --rate 250:1000 --port $port"
