@@ -141,7 +141,8 @@ void add_selection(Command command, SelectionOptions& options, Selects selects) 
       .rewritten(full_profile_name);
   add_rates(command, options.rates,
             with_flights ? "Only these loop rates [Hz], separated by commas; flights of v1.14 to "
-                           "v1.18 have pairs such as 250:1000"
+                           "v1.18 have pairs such as 250:1000, and one rate selects all pairs in "
+                           "which the rate unit has it: 250 also selects 50:250"
                          : "Only these loop rates [Hz], separated by commas")
       .group(option_group::selection);
   command
@@ -162,8 +163,11 @@ void add_selection(Command command, SelectionOptions& options, Selects selects) 
 }
 
 std::string full_profile_name(const std::string& given) {
-  const std::string full = "px4-" + given;
-  return find_profile(full) != nullptr ? full : given;
+  const std::string full = given.starts_with("px4-") ? given : "px4-" + given;
+  if (find_profile(full) != nullptr) return full;
+  std::vector<std::string> begun = known_profile_names();
+  std::erase_if(begun, [&](const std::string& name) { return !name.starts_with(full + "."); });
+  return begun.size() == 1 ? begun.front() : given;
 }
 
 Result<void> check_profiles(const std::vector<std::string>& names) {

@@ -34,7 +34,7 @@ enum class Ports { callable, any };
 void add_port(Command command, HostOptions& host, Ports accepted = Ports::callable);
 // The port as an argument without a name. REQUIRES: add_port() was called.
 void add_port_argument(Command command, HostOptions& host);
-// The name of a profile: "v1.5.5" becomes "px4-v1.5.5", if there is such a profile.
+// The name of a profile: "v1.5.5" and "v1.5" become "px4-v1.5.5", if no other profile begins so.
 std::string full_profile_name(const std::string& given);
 // Errors: one of the names is not that of a profile.
 Result<void> check_profiles(const std::vector<std::string>& names);

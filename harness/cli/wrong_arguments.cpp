@@ -1,8 +1,12 @@
 #include "harness/cli/wrong_arguments.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -12,18 +16,52 @@
 #include "harness/core/suggestion.hpp"
 
 namespace attest::cli {
+namespace {
+
+constexpr std::string_view profile_is_in_id =
+    "; the profile is a part of the case: PROFILE/GROUP/NAME, of `attest list --profile PROFILE`";
+
+// What other commands have, with what this command has instead.
+struct Elsewhere {
+  std::string_view command, word, instead;
+};
+constexpr std::array elsewhere{
+    Elsewhere{"sim", "--profile", profile_is_in_id},
+    Elsewhere{"record", "--profile", profile_is_in_id},
+    Elsewhere{"stress", "--profile", profile_is_in_id},
+    Elsewhere{"sweep-rate", "--profile", profile_is_in_id},
+    Elsewhere{"list", "faults", "; `attest faults --list` lists them"},
+    Elsewhere{"list", "--faults", "; `attest faults --list` lists them"},
+    Elsewhere{"plot", "--out", "; the page is --html F"},
+    Elsewhere{"hunt", "--rate", "; a hunt varies the rate itself, and --module selects"},
+    Elsewhere{"hunt", "--rates", "; a hunt varies the rate itself, and --module selects"},
+    Elsewhere{"hunt", "--filter", "; a hunt makes its inputs itself, and --module selects"},
+};
+
+// Empty: no command has it, or its name is to be corrected.
+std::string_view instead_of(std::string_view command, std::string_view word) {
+  for (const Elsewhere& one : elsewhere) {
+    if (one.command == command && one.word == word) return one.instead;
+  }
+  return "";
+}
+
+}  // namespace
 
 std::string unknown_command(const CLI::App& app, const std::string& word) {
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
   if (std::find(names.begin(), names.end(), word) != names.end()) return "";
-  return fmt::format("unknown command `{}`{}; attest --help shows them", word,
-                     suggestion(word, names));
+  std::error_code unknown;
+  const bool is_file = std::filesystem::is_regular_file(word, unknown);
+  return fmt::format(
+      "unknown command `{}`{}; attest --help shows them", word,
+      is_file ? fmt::format("; did you mean `attest run {}`?", word) : suggestion(word, names));
 }
 
 std::string unknown_option(const CLI::App& app, int argc, char** argv) {
   std::vector<std::string> names;
-  std::string command;
+  std::string command;  // empty: none is given
   const auto add = [&](const CLI::App& one) {
     for (const CLI::Option* option : one.get_options()) {
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
@@ -33,15 +71,17 @@ std::string unknown_option(const CLI::App& app, int argc, char** argv) {
   add(app);
   for (const CLI::App* chosen : app.get_subcommands()) {
     add(*chosen);
-    command = " " + chosen->get_name();
+    command = chosen->get_name();
   }
   for (int i = 1; i < argc; ++i) {
     const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
     if (word == "--") break;
     if (!word.starts_with("--")) continue;
     if (std::find(names.begin(), names.end(), word) != names.end()) continue;
-    return fmt::format("unknown option `{}`{}; attest{} --help shows them", word,
-                       suggestion(word, names), command);
+    const std::string_view instead = instead_of(command, word);
+    return fmt::format("unknown option `{}`{}; attest {}--help shows them", word,
+                       instead.empty() ? suggestion(word, names) : instead,
+                       command.empty() ? "" : command + " ");
   }
   return "";
 }
@@ -69,7 +109,9 @@ std::string reworded(const CLI::App& app, const CLI::ParseError& error) {
   const std::size_t colon = text.find(": ");
   if (colon == std::string::npos) return text;
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
-    return fmt::format("too many arguments: `{}`", text.substr(colon + 2));
+    const std::string words = text.substr(colon + 2);
+    const std::string command = commands.empty() ? "" : commands.front()->get_name();
+    return fmt::format("too many arguments: `{}`{}", words, instead_of(command, words));
   }
   const std::string_view lacks_value = " missing";
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr &&

@@ -101,8 +101,15 @@ const FileFormat& format_of(const std::filesystem::path& path) {
   return found == formats.end() ? format_for(path) : *found;
 }
 
-Result<void> check_is_no_pointer(const std::filesystem::path& path) {
-  if (!first_bytes_of(path).starts_with("version https://git-lfs.github.com/spec/v1")) return {};
+Result<void> check_is_data(const std::filesystem::path& path) {
+  const std::string bytes = first_bytes_of(path);
+  if (bytes.starts_with("\x7f"
+                        "ELF")) {
+    return fail_at(path.string(),
+                   "is a library or program, not a trace; `attest run` runs a port, and `attest "
+                   "record` writes its trace");
+  }
+  if (!bytes.starts_with("version https://git-lfs.github.com/spec/v1")) return {};
   return fail_at(path.string(),
                  "is a pointer of Git LFS, not the file itself; fetch it with `git lfs pull`");
 }

@@ -59,15 +59,16 @@ Result<const FileFormat*> parse_table_format(std::string_view name);
 tl::unexpected<Error> wrong_format(const std::filesystem::path& path, const FileFormat& format,
                                    bool (*can)(const FileFormat& format));
 
-// Errors: the file is the pointer that Git has in place of a large file.
-Result<void> check_is_no_pointer(const std::filesystem::path& path);
+// Errors: the file is a library or a program; it is the pointer that Git has in place of a large
+// file.
+Result<void> check_is_data(const std::filesystem::path& path);
 
 // Calls a function of the file's format: read_as<&FileFormat::open>(path, TraceNeed::outputs).
-// Errors: those of the function; the format does not have it; those of check_is_no_pointer().
+// Errors: those of the function; the format does not have it; those of check_is_data().
 template <auto function, typename... Arguments>
 auto read_as(const std::filesystem::path& path, const Arguments&... arguments)
     -> std::invoke_result_t<decltype(FileFormat{}.*function), decltype(path), const Arguments&...> {
-  if (auto checked = check_is_no_pointer(path); !checked) return tl::unexpected(checked.error());
+  if (auto checked = check_is_data(path); !checked) return tl::unexpected(checked.error());
   const FileFormat& format = format_of(path);
   if (format.*function != nullptr) return (format.*function)(path, arguments...);
   return wrong_format(path, format, [](const FileFormat& one) { return one.*function != nullptr; });

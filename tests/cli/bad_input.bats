@@ -264,7 +264,7 @@ wrong() {
   wrong "text.csv:1:1: unknown column \`hello\`; \`attest list --channels\` shows" replay text.csv
   wrong "no/x.csv: cannot create the file: No such file or directory; make the folder no first" \
     sim hover --out no/x.csv
-  wrong "no profile \`v1.5\`; did you mean \`px4-v1.5.5\`?" replay good.csv --profile v1.5
+  wrong "no profile \`v1.6\`; there are px4-v1.5.5, " replay good.csv --profile v1.6
   wrong "no cases of profile \`1.5.5\`; did you mean \`px4-v1.5.5\`?" run --profile 1.5.5
   wrong "--within: \`-1\` is no number of at least 0; " replay good.csv --within -1
   wrong "--at-least: \`2\` is no number from 0 to 1; " replay good.csv --at-least 2

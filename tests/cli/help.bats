@@ -47,6 +47,36 @@ commands=(run hunt replay sim stress sweep sweep-rate schedule time compare plot
   has 'no case with --group attitude matches `rates/*`'
 }
 
+@test "what only another command takes is answered with what this one has" {
+  printf '\177ELF' >mine.so
+  while read -r command hint; do
+    run "$ATTEST" ${command//+/ }
+    [ "$status" -eq 2 ]
+    has "$hint"
+  done <<'HINTS'
+sim+hover+--profile+v1.16 unknown option `--profile`; the profile is a part of the case
+list+faults too many arguments: `faults`; `attest faults --list` lists them
+list+--faults `attest faults --list`
+plot+--out+F+a.csv the page is --html F
+hunt+--rate+250 a hunt varies the rate itself
+mine.so did you mean `attest run mine.so`?
+compare+mine.so+mine.so mine.so: is a library or program, not a trace; `attest run` runs a port
+record+--rate+250+--case --case needs a value
+HINTS
+}
+
+@test "the beginning of a version is enough, if only one profile has it" {
+  for version in v1.16 px4-v1.16 v1.16.0; do
+    run "$ATTEST" list --profile $version --group rates
+    [ "$status" -eq 0 ]
+    has "px4-v1.16.0/rates/"
+    lacks "px4-v1.5.5"
+  done
+  run "$ATTEST" list --profile v1
+  [ "$status" -eq 2 ]
+  has "no cases of profile \`v1\`"
+}
+
 @test "attest alone begins with new-port" {
   run "$ATTEST"
   [ "$status" -eq 2 ]
