@@ -186,7 +186,8 @@ void add_new_port(const CommandLine& line) {
       .option("--lang", options->language,
               "Port to start from: `c`, `cpp`, `python`, `rust` or `simulink` for v1.5.5 and "
               "v1.3.4; `c_cascade` or `python_cascade` for v1.14 to v1.18; `c_law`, "
-              "`python_law` or `octave` for the two laws of v1.14 to v1.17 alone; `cortex_m` or "
+              "`python_law` or `octave` for the two laws of v1.14 to v1.17 alone, and the rate law "
+              "of v1.18; `cortex_m` or "
               "`serial_board` for those in C on an emulated or a real board")
       .type("LANG");
   command.examples(

@@ -5,7 +5,8 @@
 
 Takes the ```sh blocks of DOCUMENT in order, in one shell, in a fresh copy of the repository below
 the scratch directory: at its root, or for a starter in the starter's folder, where its reader is.
-The copy for a starter has only controller/, because it uses the installed attest for all else.
+The copy for a starter has only controller/, because it uses the installed attest for all else. The
+starter's folder has the headers in include/, as `attest new-port` makes it.
 A command has to succeed. A command that ends in the comment `# exit 1` has to exit with that
 status. With `# exit 0 or 2` both are accepted, because the result depends on the machine.
 
@@ -152,6 +153,10 @@ def run(document: str, root: pathlib.Path, scratch: pathlib.Path, environment: d
     of_starter = document.startswith("controller/starters/")
     copy_repository(root, scratch, "controller/" if of_starter else "")
     folder = (scratch / document).parent if of_starter else scratch
+    if of_starter:
+        (folder / "include").mkdir()
+        for header in (scratch / "controller").glob("*.h"):
+            shutil.copy2(header, folder / "include")
     # A file, because commands may read their standard input.
     commands = scratch.with_name(scratch.name + ".sh")
     commands.write_text(script(to_run), encoding="utf-8")

@@ -73,7 +73,10 @@ class Documents(unittest.TestCase):
 
     def test_a_starter_runs_in_its_folder(self):
         self.write("controller/a.h", "")
-        text = "```sh\ntest -f README.md\ntest -f ../../a.h\ntest -e ../../../cases # exit 1\n```\n"
+        text = (
+            "```sh\ntest -f README.md\ntest -f ../../a.h\ntest -f include/a.h\n"
+            "test -e ../../../cases # exit 1\n```\n"
+        )
         self.assert_passes(text, "controller/starters/c/README.md")
 
     def test_a_failing_command_is_named_with_its_line(self):

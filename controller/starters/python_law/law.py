@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The two laws of PX4 v1.14 to v1.17: attitude to rates, and rates to torque.
+"""The attitude law of PX4 v1.14 to v1.17, and the rate law of v1.14 to v1.18.
 
 World is NED, body is FRD. Quaternions are (w, x, y, z), body to world. Vectors are about body
 x, y, z: roll, pitch, yaw. All numbers are Binary32. The order of each sum and product is part of
