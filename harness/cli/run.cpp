@@ -92,6 +92,12 @@ std::size_t flights_of(const RunPlan& plan) {
 
 // Runs the vectors, until an interrupt or until the port seems to hang.
 void run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
+  if (kind_of(plan.host.port).is_program && options.select.selects_all() && !globals.quiet) {
+    fmt::print(stderr,
+               "attest: note: {} are selected; for a slow port, --core selects few that catch the "
+               "same mistakes\n",
+               counted(plan.run.selected, "vector"));
+  }
   Progress progress(plan.run.selected, Progress::on_stderr(globals.quiet), 0, flights_of(plan));
   JobOptions<VectorResult> jobs;
   jobs.processes = options.jobs;

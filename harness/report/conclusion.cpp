@@ -72,7 +72,7 @@ std::string cases_of(const Together& group) {
   return out;
 }
 
-// "  28 do not apply to this port:", and a line for each reason.
+// "  28 do not apply to this port, which need not have all modules:", and a line for each reason.
 std::string not_applicable(const RunResult& run) {
   const auto reasons = grouped(
       run, [](const VectorResult& result) { return !result.applies; },
@@ -83,7 +83,11 @@ std::string not_applicable(const RunResult& run) {
     count += group.size();
     lines += fmt::format("      {}: {}\n", group.size(), one_line(group.front()->reason));
   }
-  return count == 0 ? "" : fmt::format("  {} do not apply to this port:\n{}", count, lines);
+  return count == 0 ? ""
+                    : fmt::format(
+                          "  {} do not apply to this port, which need not have all "
+                          "modules and profiles:\n{}",
+                          count, lines);
 }
 
 // `in_part`: some failing vectors have deviations that no suspect explains.

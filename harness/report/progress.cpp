@@ -75,7 +75,8 @@ std::string Progress::speed(Clock::time_point now) const {
   const double rate = static_cast<double>(done_ - done_before_) / seconds;
   const std::optional<double> left = seconds_left(seconds);
   if (!left) return fmt::format(", {:.3g}/s", rate);
-  constexpr double long_s = 120;
+  constexpr double long_s = 120, short_s = 1;
+  if (*left < short_s) return fmt::format(", {:.3g}/s, nearly done", rate);
   return *left > long_s ? fmt::format(", {:.3g}/s, {:.0f} min left", rate, *left / 60)
                         : fmt::format(", {:.3g}/s, {:.0f} s left", rate, *left);
 }

@@ -20,7 +20,7 @@ class Progress {
  public:
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::milliseconds redraw_interval{50};
-  static constexpr std::chrono::seconds line_interval{30};
+  static constexpr std::chrono::seconds line_interval{10};
 
   enum class Form { none, drawn, lines };
   struct Options {
@@ -46,7 +46,7 @@ class Progress {
   // Counts one more result. Draws at most once per redraw_interval; writes a line at most once per
   // line_interval, the first one after that time. From the second drawing on, the line has the
   // results per second. It has the remaining time as soon as a result of each kind that is left is
-  // known.
+  // known; the last results may take longer than the mean, so the end is never announced as 0 s.
   void add(const VectorResult& result, Clock::time_point now = Clock::now());
   void add(bool failed, const std::string& latest, Clock::time_point now = Clock::now());
   void finish();

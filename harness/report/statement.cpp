@@ -21,7 +21,7 @@ std::string names_of(const std::vector<std::string>& groups) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-// "all groups, with mixer", "groups attitude, tpa and parts of modes".
+// "all groups, with mixer", "groups attitude, tpa and parts of modes", "parts of 16 groups".
 std::string which_groups(const Claim& claim) {
   std::string out = "no group";
   if (claim.has_all_groups) {
@@ -30,7 +30,10 @@ std::string which_groups(const Claim& claim) {
     out = fmt::format("group{} {}", claim.whole.size() == 1 ? "" : "s", names_of(claim.whole));
   }
   if (!claim.in_part.empty()) {
-    const std::string parts = "parts of " + names_of(claim.in_part);
+    constexpr std::size_t most_named = 3;
+    const std::size_t count = claim.in_part.size();
+    const std::string parts =
+        "parts of " + (count > most_named ? counted(count, "group") : names_of(claim.in_part));
     out = claim.whole.empty() ? parts : out + " and " + parts;
   }
   if (!claim.modules.empty()) out += ", with " + names_of(claim.modules);

@@ -21,6 +21,13 @@ refused() {
   [ ! -e report.json ]
 }
 
+@test "a run of all vectors on a program names --core" {
+  run timeout --signal=INT 5 "$ATTEST" run --port "$(starter)"
+  has "for a slow port, --core selects few"
+  run "$ATTEST" run --port "$(starter)" --filter px4-v1.5.5/rates/p_alone@250hz
+  lacks "--core selects few"
+}
+
 @test "the starter in Python conforms, and keeps the rules of the exchange" {
   run "$ATTEST" smoke --verbose --port "$(starter)"
   [ "$status" -eq 0 ]

@@ -71,6 +71,12 @@ TEST_F(ProgressTest, TellsTheSpeedAndTheRemainingTime) {
   EXPECT_THAT(written(), HasSubstr(" 411/1000, 1/s, 10 min left  sample 7"));
 }
 
+TEST_F(ProgressTest, NeverAnnouncesTheEnd) {
+  Progress progress(21, visible());
+  for (int i = 0; i < 20; ++i) progress.add(false, "x", start_ + milliseconds(100 * i + 1));
+  EXPECT_THAT(written(), HasSubstr(" 20/21, 10/s, nearly done  x"));
+}
+
 // Flights take longer than other vectors, and are run last.
 TEST_F(ProgressTest, KnowsNoRemainingTimeBeforeTheFirstFlight) {
   Progress progress(120, visible(), 0, 20);
@@ -104,14 +110,14 @@ TEST_F(ProgressTest, SurvivesMoreResultsThanAnnounced) {
   EXPECT_THAT(written(), HasSubstr("[########################] 1/0 "));
 }
 
-TEST_F(ProgressTest, AFileGetsALineEvery30Seconds) {
+TEST_F(ProgressTest, AFileGetsALineEvery10Seconds) {
   Progress progress(1000, {stream_, Progress::Form::lines, 80});
-  for (int i = 0; i <= 65; ++i) {
-    progress.add(i == 40, "latest", start_ + std::chrono::seconds(i));
+  for (int i = 0; i <= 25; ++i) {
+    progress.add(i == 15, "latest", start_ + std::chrono::seconds(i));
   }
   EXPECT_EQ(written(),
-            "attest: 31 of 1000 done, 1/s, 16 min left\n"
-            "attest: 61 of 1000 done, 1 failed, 1/s, 16 min left\n");
+            "attest: 11 of 1000 done, 1/s, 16 min left\n"
+            "attest: 21 of 1000 done, 1 failed, 1/s, 16 min left\n");
 }
 
 TEST(ProgressOptions, QuietIsInvisible) {

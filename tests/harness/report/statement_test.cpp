@@ -55,6 +55,17 @@ TEST(Statement, OfAPartSaysWhatIsMissing) {
   EXPECT_THAT(conformance_statement(run), HasSubstr("(custom suite aaaaaaaaaaaa)"));
 }
 
+TEST(Statement, CountsManyPartsOfGroups) {
+  const std::vector<std::string> groups{"arming", "attitude", "modes", "rates"};
+  RunResult run = run_of(groups);
+  const std::vector<VectorResult> passed = run.results;
+  for (VectorResult result : passed) {
+    result.verdict = Verdict::unsupported;
+    run.results.push_back(result);
+  }
+  EXPECT_THAT(conformance_statement(run), HasSubstr("2 rates, parts of 4 groups (because: "));
+}
+
 TEST(Statement, SaysWhatWasAllowedToFixedPoint) {
   RunResult run = run_of({"tpa"});
   run.fraction_bits = 22;
