@@ -9,6 +9,7 @@
 #include "harness/casefile/parse.hpp"
 #include "harness/casefile/select.hpp"
 #include "harness/core/suite_files.hpp"
+#include "harness/port/port.hpp"
 #include "harness/port/profiles.hpp"
 
 namespace attest::cli {
@@ -25,6 +26,9 @@ void keep_law(const LoopRate& rate, std::vector<SelectedCase>& found) {
 
 Result<Case> find_case(const std::string& name, const SuiteFolder& suite,
                        const std::optional<LoopRate>& rate) {
+  if (port_of_file(name).starts_with("lib:")) {
+    return fail(fmt::format("{} is a port, not a case; write the case before it", name));
+  }
   // A folder may have the name of a case by chance, so it is not a case file.
   if (is_suite_file(name) || name.ends_with(".toml")) return parse_case(name);
   Selection selection;

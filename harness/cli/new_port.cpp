@@ -38,20 +38,20 @@ struct Language {
 constexpr std::array starters_for_board{"c", "c_cascade", "c_law", "c_program", "cortex_m"};
 
 constexpr std::array languages{
-    Language{"c", "C", "cc", true, "attitude"},
+    Language{"c", "C, of PX4 v1.5.5 and v1.3.4", "cc", true, "attitude"},
     Language{"c_cascade", "C, with both units of PX4 v1.14 to v1.18", "cc", true, "attitude"},
     Language{"c_law", "C, with the attitude law and the rate law alone", "cc", true, "rate_law"},
     Language{"cortex_m", "C for a Cortex-M or RISC-V, run in an emulator", "arm-none-eabi-gcc",
              true, "attitude", true},
-    Language{"cpp", "C++", "c++", true, "attitude"},
+    Language{"cpp", "C++, of PX4 v1.5.5 and v1.3.4", "c++", true, "attitude"},
     Language{"octave", "Octave, with the attitude law and the rate law alone", "octave-cli", false,
              "rate_law"},
-    Language{"python", "Python", "python3", false, "attitude"},
+    Language{"python", "Python, of PX4 v1.5.5 and v1.3.4", "python3", false, "attitude"},
     Language{"python_cascade", "Python, with both units of PX4 v1.14 to v1.18", "python3", false,
              "attitude"},
     Language{"python_law", "Python, with the attitude law and the rate law alone", "python3", false,
              "rate_law"},
-    Language{"rust", "Rust", "cargo", false, "attitude"},
+    Language{"rust", "Rust, of PX4 v1.5.5 and v1.3.4", "cargo", false, "attitude"},
     Language{"serial_board", "C for a board on a serial line", "python3", true, "attitude", true},
     Language{"simulink", "C generated from a Simulink model", "cc", true, "attitude"},
 };

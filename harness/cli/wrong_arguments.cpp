@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -21,7 +22,7 @@ namespace {
 constexpr std::string_view profile_is_in_id =
     "; the profile is a part of the case: PROFILE/GROUP/NAME, of `attest list --profile PROFILE`";
 
-// What other commands have, with what this command has instead.
+// What other commands have, with what this command has instead. An empty word is any argument.
 struct Elsewhere {
   std::string_view command, word, instead;
 };
@@ -32,6 +33,14 @@ constexpr std::array elsewhere{
     Elsewhere{"sweep-rate", "--profile", profile_is_in_id},
     Elsewhere{"list", "faults", "; `attest faults --list` lists them"},
     Elsewhere{"list", "--faults", "; `attest faults --list` lists them"},
+    Elsewhere{"list", "--case", "; --filter chooses cases"},
+    Elsewhere{"list", "", "; --group and --filter choose cases"},
+    Elsewhere{"run", "--case", "; --filter chooses cases"},
+    Elsewhere{"run", "", "; --filter chooses cases"},
+    Elsewhere{"time", "--case", "; --filter chooses cases"},
+    Elsewhere{"vectors", "--case", "; --filter chooses cases"},
+    Elsewhere{"plot", "--signal", "; --channels chooses signals"},
+    Elsewhere{"plot", "--signals", "; --channels chooses signals"},
     Elsewhere{"plot", "--out", "; the page is --html F"},
     Elsewhere{"hunt", "--rate", "; a hunt varies the rate itself, and --module selects"},
     Elsewhere{"hunt", "--rates", "; a hunt varies the rate itself, and --module selects"},
@@ -64,6 +73,7 @@ std::string unknown_option(const CLI::App& app, int argc, char** argv) {
   std::string command;  // empty: none is given
   const auto add = [&](const CLI::App& one) {
     for (const CLI::Option* option : one.get_options()) {
+      for (const std::string& name : option->get_snames()) names.push_back("-" + name);
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
       for (const std::string& name : option->get_fnames()) names.push_back("--" + name);
     }
@@ -74,13 +84,16 @@ std::string unknown_option(const CLI::App& app, int argc, char** argv) {
     command = chosen->get_name();
   }
   for (int i = 1; i < argc; ++i) {
-    const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
+    std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
     if (word == "--") break;
-    if (!word.starts_with("--")) continue;
+    const bool is_short =
+        word.size() > 1 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])) != 0;
+    if (!is_short && !word.starts_with("--")) continue;
+    if (is_short) word.resize(2);  // the value of -j4
     if (std::find(names.begin(), names.end(), word) != names.end()) continue;
     const std::string_view instead = instead_of(command, word);
     return fmt::format("unknown option `{}`{}; attest {}--help shows them", word,
-                       instead.empty() ? suggestion(word, names) : instead,
+                       instead.empty() && !is_short ? suggestion(word, names) : instead,
                        command.empty() ? "" : command + " ");
   }
   return "";
@@ -106,12 +119,23 @@ std::string reworded(const CLI::App& app, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && !missing.empty()) {
     return fmt::format("attest {} needs {}", commands.front()->get_name(), missing);
   }
+  if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr &&
+      text == "--port excludes port") {
+    const std::string_view instead = instead_of(commands.front()->get_name(), "");
+    return fmt::format("the port is given twice, as an argument and with --port{}", instead);
+  }
   const std::size_t colon = text.find(": ");
   if (colon == std::string::npos) return text;
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr &&
+      text.starts_with("--case: At Most 1 ")) {
+    return "the case is given twice, with --case and as the first argument";
+  }
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     const std::string words = text.substr(colon + 2);
     const std::string command = commands.empty() ? "" : commands.front()->get_name();
-    return fmt::format("too many arguments: `{}`{}", words, instead_of(command, words));
+    const std::string_view instead = instead_of(command, words);
+    return fmt::format("too many arguments: `{}`{}", words,
+                       instead.empty() ? instead_of(command, "") : instead);
   }
   const std::string_view lacks_value = " missing";
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr &&

@@ -70,8 +70,12 @@ Result<std::unique_ptr<Port>> refuse_unknown(const std::string& specification) {
                     specification, (path / name).string(), (path / "check").string()));
   }
   if (path.has_extension() || path.has_parent_path()) {
-    return fail(fmt::format("{}: no such file; a port is a file or one of {}", specification,
-                            names_of_port_kinds(true)));
+    const std::filesystem::path script = path.parent_path() / "check";
+    const bool is_unbuilt = std::filesystem::is_regular_file(script, unreadable);
+    return fail(
+        fmt::format("{}: no such file{}; a port is a file or one of {}", specification,
+                    is_unbuilt ? "; build it, as the script " + script.string() + " does" : "",
+                    names_of_port_kinds(true)));
   }
   return fail(
       fmt::format("unknown port `{}`; use one of {}", specification, names_of_port_kinds(true)));

@@ -48,7 +48,8 @@ commands=(run hunt replay sim stress sweep sweep-rate schedule time compare plot
 }
 
 @test "what only another command takes is answered with what this one has" {
-  printf '\177ELF' >mine.so
+  cp "$STARTER" mine.so
+  touch check
   while read -r command hint; do
     run "$ATTEST" ${command//+/ }
     [ "$status" -eq 2 ]
@@ -62,6 +63,15 @@ hunt+--rate+250 a hunt varies the rate itself
 mine.so did you mean `attest run mine.so`?
 compare+mine.so+mine.so mine.so: is a library or program, not a trace; `attest run` runs a port
 record+--rate+250+--case --case needs a value
+record+mine.so+--rate+250 mine.so is a port, not a case; write the case before it
+sim+mine.so is a port, not a case; write the case before it
+sim+mine.so+--case+hover the case is given twice, with --case and as the first argument
+run+--port+mine.so+hover the port is given twice, as an argument and with --port; --filter
+run+mine.so+hover too many arguments: `hover`; --filter chooses cases
+run+--case+hover unknown option `--case`; --filter chooses cases
+run+./port.so ./port.so: no such file; build it, as the script ./check does
+list+attitude too many arguments: `attitude`; --group and --filter choose cases
+new-port+mine+-l+c unknown option `-l`; attest new-port --help shows them
 HINTS
 }
 
