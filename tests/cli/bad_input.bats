@@ -274,7 +274,7 @@ wrong() {
   wrong "--shift abc: write a whole number of microseconds" compare good.csv good.csv --shift abc
   wrong "no case matches \`atitude/*\`; did you mean \`attitude/*\`?" run --filter 'atitude/*'
   wrong "no case matches \`rates/p_alon\`; did you mean \`rates/p_alone\`" run --filter rates/p_alon
-  wrong "too many arguments: \`two\`; attest run --help" run text.so two
+  wrong "too many arguments: \`two\`; --filter chooses cases; attest run --help" run text.so two
   wrong "--json needs a value; attest run --help" run --json
   wrong "attest record needs CASE and --rate; attest record --help" record
   wrong "attest sweep needs SWEEP.toml and --out; attest sweep --help" sweep

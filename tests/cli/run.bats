@@ -20,7 +20,7 @@ quick=(--group battery --group rates --rate 100,250,8000)
 @test "help names the first steps" {
   run "$ATTEST" --help
   [ "$status" -eq 0 ]
-  has "attest run --port lib:./libmine.so"
+  has "attest run mine/port.so"
 }
 
 @test "a wrong command line is an error that says what to do" {
