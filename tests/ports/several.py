@@ -3,11 +3,13 @@
 
 A file of the folder `several` is a starter with three to nine mistakes, invented from the law
 without the catalogue of faults. `names` are the faults of the catalogue that are the same mistake;
-none if the catalogue has no such fault. Each port is run once, at 250 Hz in its profile.
+none if the catalogue has no such fault. `parts` are true of the port because of the mistake, but
+less than all of it. Each port is run once, at 250 Hz in its profile.
 
 A mistake is named if a suspect of the report, or a fault that the report calls equally good, is one
-of its names. A suspect that is no mistake of the port is wrong. Prints a table. Exits 1 if a share
-misses its bound, and 2 if an edit does not apply or a port does not compile.
+of its names. A suspect that is neither a name nor a part is wrong: the port does not do what the
+report says. Prints a table. Exits 1 if a share misses its bound, and 2 if an edit does not apply or
+a port does not compile.
 """
 
 import argparse
@@ -73,9 +75,9 @@ def diagnose(attest: str, port: dict, library: pathlib.Path) -> dict:
 def score(mistakes: list[dict], diagnosis: dict) -> Score:
     suspects = [{s["fault"], *s["ambiguity_group"]} for s in diagnosis["suspects"]]
     unnamed = [m["what"] for m in mistakes if not any(set(m["names"]) & s for s in suspects)]
-    all_names = {name for mistake in mistakes for name in mistake["names"]}
+    true = {name for m in mistakes for name in [*m["names"], *m.get("parts", [])]}
     found = zip(diagnosis["suspects"], suspects)
-    wrong = [suspect["fault"] for suspect, names in found if not names & all_names]
+    wrong = [suspect["fault"] for suspect, names in found if not names & true]
     return Score(len(mistakes), unnamed, wrong)
 
 
