@@ -61,8 +61,8 @@ broken() {
   run "$ATTEST" sim hover --rate 250:1000 --port "lib:$STARTER" --html page.html
   [ "$status" -eq 2 ]
   [ ! -e page.html ]
-  has "skip: the port does not support profile px4-v1.16.0"
-  has "supports px4-v1.5.5, px4-v1.3.4, not px4-v1.16.0; write: attest sim px4-v1.5.5/flight/hover"
+  has "skip: the port does not support profile px4-v1.18"
+  has "supports px4-v1.5.5, px4-v1.3.4, not px4-v1.18; write: attest sim px4-v1.5.5/flight/hover"
 }
 
 @test "a port with a wrong sign loses its vehicle, and the verdict says when" {

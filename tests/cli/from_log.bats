@@ -37,7 +37,7 @@ from_log=ours/cases/px4-v1.5.5/from_log/gust_from_1s_to_1_5s.toml
 
 @test "a part that the log does not have is an error, and no folder is made" {
   "$ATTEST" sim gust --rate 250 --out gust.ulg >/dev/null
-  for wrong in "--from 9" "--to 9" "--from 2 --to 1" "--from 1 --to 1.001" "--profile px4-v1.5" \
+  for wrong in "--from 9" "--to 9" "--from 2 --to 1" "--from 1 --to 1.001" "--profile px4-v1.9" \
     "--group tpa" "--rate 250"; do
     run "$ATTEST" vectors ours --from-log gust.ulg $wrong
     [ "$status" -eq 2 ]
