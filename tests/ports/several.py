@@ -10,6 +10,10 @@ A mistake is named if a suspect of the report, or a fault that the report calls 
 of its names. A suspect that is neither a name nor a part is wrong: the port does not do what the
 report says. Prints a table. Exits 1 if a share misses its bound, and 2 if an edit does not apply or
 a port does not compile.
+
+With `--alone PORT NUMBER FAULT`, compares a port that has only its mistake NUMBER (from 1) with the
+fault, instead: whether the vectors that fail with the fault have the same deviations. So FAULT is a
+name of the mistake if both fail in the same vectors, and else a part.
 """
 
 import argparse
@@ -62,14 +66,14 @@ def build(folder: pathlib.Path) -> pathlib.Path:
     return folder / "port.so"
 
 
-def diagnose(attest: str, port: dict, library: pathlib.Path) -> dict:
-    report = library.with_name("report.json")
-    command = [attest, "-q", "run", "--port", f"lib:{library}", "--profile", port["profile"]]
+def run(attest: str, port: str, profile: str, report: pathlib.Path) -> dict:
+    """The JSON report of a run of a wrong port."""
+    command = [attest, "-q", "run", "--port", port, "--profile", profile]
     command += ["--rate", "250", "--json", report]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode != 1:
         raise Broken(f"attest run exited with {done.returncode}:\n{done.stdout}{done.stderr}")
-    return json.loads(report.read_text())["diagnosis"]
+    return json.loads(report.read_text())
 
 
 def score(mistakes: list[dict], diagnosis: dict) -> Score:
@@ -86,13 +90,40 @@ def judge(attest: str, path: pathlib.Path) -> Score:
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         make(port, folder)
-        return score(port["mistakes"], diagnose(attest, port, build(folder)))
+        report = run(attest, f"lib:{build(folder)}", port["profile"], folder / "report.json")
+        return score(port["mistakes"], report["diagnosis"])
+
+
+def compare_alone(attest: str, name: str, number: int, fault: str) -> None:
+    """Prints in how many vectors the mistake alone and the fault have the same deviations."""
+    port = tomllib.loads((HERE / "several" / f"{name}.toml").read_text())
+    port["mistakes"] = port["mistakes"][number - 1 : number]
+
+    def deviations(subject: str, report: pathlib.Path) -> dict[str, list]:
+        results = run(attest, subject, port["profile"], report)["results"]
+        failing = (result for result in results if result["verdict"] == "fail")
+        keys = ("first", "deviating_ticks", "largest")
+        return {result["id"]: [result.get(key) for key in keys] for result in failing}
+
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = pathlib.Path(temporary)
+        make(port, folder)
+        mistake = deviations(f"lib:{build(folder)}", folder / "mistake.json")
+        expected = deviations(f"fault:{fault}", folder / "fault.json")
+    same = sum(mistake.get(vector) == each for vector, each in expected.items())
+    print(f"{port['mistakes'][0]['what']}: fails {len(mistake)} vectors")
+    print(f"{fault}: fails {len(expected)}, {same} of them with the same deviations")
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("attest")
+    parser.add_argument("--alone", nargs=3, metavar=("PORT", "NUMBER", "FAULT"))
     args = parser.parse_args()
+    if args.alone:
+        name, number, fault = args.alone
+        compare_alone(args.attest, name, int(number), fault)
+        return 0
     print("| port | named | not named | named wrongly |\n|---|---|---|---|")
     scores = []
     for path in sorted((HERE / "several").glob("*.toml")):
