@@ -18,7 +18,7 @@ namespace {
 
 struct RecordOptions {
   HostOptions host;
-  std::string case_name, rate, out = "-";
+  std::string case_name, rate = "250", out = "-";
 };
 
 // The case of the same name in the first profile that has it and that the port supports; else
@@ -43,7 +43,7 @@ Result<Trace> recorded(const RecordOptions& options, const SuiteFolder& suite) {
   const auto fault = (*host)->drive(subject_of(*the_case), trace);
   if (!fault) return trace;
   const auto cases_of = [](const std::string& profile, const std::string& port) {
-    return fmt::format("attest record CASE --rate 250{}, with a CASE of `attest list --profile {}`",
+    return fmt::format("attest record CASE{}, with a CASE of `attest list --profile {}`",
                        port, profile);
   };
   return tl::unexpected(
@@ -79,7 +79,7 @@ void add_record(const CommandLine& line) {
   command.option("case,--case", options->case_name, "The case: its name or id, or a case file")
       .type("CASE")
       .required();
-  command.option("--rate", options->rate, "The loop rate [Hz]").type("HZ").required();
+  command.option("--rate", options->rate, "The loop rate [Hz]").type("HZ").shows_default();
   add_port(command, options->host);
   add_port_argument(command, options->host);
   command
@@ -91,7 +91,7 @@ void add_record(const CommandLine& line) {
       .type("F")
       .shows_default();
   add_timeout(command, options->host.timeout_s);
-  command.examples({{"attest record rates/p_alone ./libmine.so --rate 250 --out mine.csv",
+  command.examples({{"attest record rates/p_alone ./libmine.so --out mine.csv",
                      "write a trace for `attest plot`, `replay` or `compare`"}});
   command.runs(options, record_command);
 }

@@ -276,7 +276,7 @@ wrong() {
   wrong "no case matches \`rates/p_alon\`; did you mean \`rates/p_alone\`" run --filter rates/p_alon
   wrong "too many arguments: \`two\`; --filter chooses cases; attest run --help" run text.so two
   wrong "--json needs a value; attest run --help" run --json
-  wrong "attest record needs CASE and --rate; attest record --help" record
+  wrong "attest record needs CASE; attest record --help" record
   wrong "attest sweep needs SWEEP.toml and --out; attest sweep --help" sweep
   for page in sweeps timing; do
     { "$ATTEST" sweep --help && "$ATTEST" schedule --help; } | tr -s ' \n' ' ' >help.txt

@@ -342,7 +342,7 @@ not px4-v1.5.5; write: attest run --profile px4-v1.18 --port $port"
   run "$ATTEST" sim hover "$port" --rate 250:500
   [ "$status" -eq 0 ]
   has "px4-v1.18/flight/hover@250-500hz"
-  run "$ATTEST" record p_alone "$port" --rate 250 --out alone.csv
+  run "$ATTEST" record p_alone "$port" --out alone.csv
   [ "$status" -eq 0 ]
   head -1 alone.csv | grep -q out/rate_ctrl_status # of the rate unit
   run "$ATTEST" sim hover --rate 250 --port "$port"
