@@ -8,6 +8,7 @@
 
 #include "harness/casefile/parse.hpp"
 #include "harness/casefile/select.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/core/suite_files.hpp"
 #include "harness/port/port.hpp"
 #include "harness/port/profiles.hpp"
@@ -24,6 +25,14 @@ void keep_law(const LoopRate& rate, std::vector<SelectedCase>& found) {
   std::erase_if(found, [&](const SelectedCase& one) { return !is_of_law(one); });
 }
 
+// Keeps only flights, unless no case is one.
+void keep_flights(std::vector<SelectedCase>& found) {
+  const auto is_flight = [](const SelectedCase& one) { return one.the_case.flight.has_value(); };
+  if (std::none_of(found.begin(), found.end(), is_flight)) return;
+  std::erase_if(found, [&](const SelectedCase& one) { return !is_flight(one); });
+}
+
+// `rate`: of a flight.
 Result<Case> find_case(const std::string& name, const SuiteFolder& suite,
                        const std::optional<LoopRate>& rate) {
   if (port_of_file(name).starts_with("lib:")) {
@@ -32,10 +41,13 @@ Result<Case> find_case(const std::string& name, const SuiteFolder& suite,
   // A folder may have the name of a case by chance, so it is not a case file.
   if (is_suite_file(name) || name.ends_with(".toml")) return parse_case(name);
   Selection selection;
-  selection.filters = {name};
+  selection.filters = {full_case_name(name)};
   auto found = select_cases(suite.case_folders(), selection);
   if (!found) return tl::unexpected(found.error());
-  if (rate) keep_law(*rate, *found);
+  if (rate) {
+    keep_flights(*found);
+    keep_law(*rate, *found);
+  }
   const Case& first = found->front().the_case;
   for (const SelectedCase& one : *found) {
     if (one.the_case.group == first.group && one.the_case.name == first.name) continue;

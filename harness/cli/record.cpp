@@ -43,8 +43,8 @@ Result<Trace> recorded(const RecordOptions& options, const SuiteFolder& suite) {
   const auto fault = (*host)->drive(subject_of(*the_case), trace);
   if (!fault) return trace;
   const auto cases_of = [](const std::string& profile, const std::string& port) {
-    return fmt::format("attest record CASE{}, with a CASE of `attest list --profile {}`",
-                       port, profile);
+    return fmt::format("attest record CASE{}, with a CASE of `attest list --profile {}`", port,
+                       profile);
   };
   return tl::unexpected(
       supported_instead(options.host, {the_case->profile}, cases_of)
@@ -78,7 +78,8 @@ void add_record(const CommandLine& line) {
       line.add("record", "Write the inputs and outputs of a port in one open-loop case as a trace");
   command.option("case,--case", options->case_name, "The case: its name or id, or a case file")
       .type("CASE")
-      .required();
+      .required()
+      .rewritten(full_case_name);
   command.option("--rate", options->rate, "The loop rate [Hz]").type("HZ").shows_default();
   add_port(command, options->host);
   add_port_argument(command, options->host);

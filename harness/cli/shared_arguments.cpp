@@ -130,9 +130,11 @@ void add_selection(Command command, SelectionOptions& options, Selects selects) 
                      "are optional"
                    : "Only vectors whose id matches this shell pattern: "
                      "PROFILE/GROUP/NAME@RATEhz; PROFILE/ and @RATEhz are optional",
-      "GLOB");
+      "GLOB")
+      .rewritten(full_case_name);
   add("--exclude", options.excludes, "Leave out the vectors whose id matches this shell pattern",
-      "GLOB");
+      "GLOB")
+      .rewritten(full_case_name);
   add("--group", options.groups, "Only these groups of cases, separated by commas", "GROUP")
       .separated_by_commas();
   add("--profile", options.profiles, "Only these versions of the law, separated by commas",
@@ -168,6 +170,11 @@ std::string full_profile_name(const std::string& given) {
   std::vector<std::string> begun = known_profile_names();
   std::erase_if(begun, [&](const std::string& name) { return !name.starts_with(full + "."); });
   return begun.size() == 1 ? begun.front() : given;
+}
+
+std::string full_case_name(const std::string& given) {
+  const std::size_t slash = std::min(given.find('/'), given.size());
+  return full_profile_name(given.substr(0, slash)) + given.substr(slash);
 }
 
 Result<void> check_profiles(const std::vector<std::string>& names) {

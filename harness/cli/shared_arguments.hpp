@@ -36,6 +36,8 @@ void add_port(Command command, HostOptions& host, Ports accepted = Ports::callab
 void add_port_argument(Command command, HostOptions& host);
 // The name of a profile: "v1.5.5" and "v1.5" become "px4-v1.5.5", if no other profile begins so.
 std::string full_profile_name(const std::string& given);
+// The same for the profile at the beginning of an id or pattern: "v1.18/rates/*".
+std::string full_case_name(const std::string& given);
 // Errors: one of the names is not that of a profile.
 Result<void> check_profiles(const std::vector<std::string>& names);
 

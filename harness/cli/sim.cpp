@@ -290,7 +290,8 @@ void add_sim(const CommandLine& line) {
   command
       .option("case,--case", options->case_name,
               "The flight: the name or id of a case, or a case file")
-      .type("CASE");
+      .type("CASE")
+      .rewritten(full_case_name);
   command
       .option("--rate", options->rate,
               "Loop rate [Hz]; for v1.14 to v1.18 the rates of both units, such as 250:1000; "

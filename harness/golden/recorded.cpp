@@ -129,6 +129,17 @@ Result<RecordedParts> RecordedParts::open(const std::filesystem::path& file,
   return parts;
 }
 
+// "; --profile px4-v1.18 has them": of the first profile that has the module and the parameters.
+std::string profile_with(Module module, const std::set<std::string>& parameters) {
+  for (const ProfileInfo& profile : known_profiles()) {
+    const auto own = parameter_names(module, std::string(profile.name));
+    const bool has_all = std::ranges::all_of(
+        parameters, [&](const std::string& name) { return is_one_of(name, own); });
+    if (has_all) return fmt::format("; --profile {} has them", profile.name);
+  }
+  return "";
+}
+
 // Leaves out the parameters that only other profiles have: a trace of one version of the law may
 // have been written with the columns of another version.
 void RecordedParts::adapt_parameters(const Trace& first) {
@@ -138,8 +149,9 @@ void RecordedParts::adapt_parameters(const Trace& first) {
     if (!is_one_of(change.name, own) && is_one_of(change.name, all)) foreign_.insert(change.name);
   }
   if (!foreign_.empty()) {
-    notes_.push_back(fmt::format("not set, because {} does not have them: {}", subject_.profile,
-                                 fmt::join(foreign_, ", ")));
+    notes_.push_back(fmt::format("not set, because {} does not have them: {}{}", subject_.profile,
+                                 fmt::join(foreign_, ", "),
+                                 profile_with(subject_.module, foreign_)));
   }
   if (subject_.module == Module::battery_status) give_cells(first);
 }

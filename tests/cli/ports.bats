@@ -342,6 +342,13 @@ not px4-v1.5.5; write: attest run --profile px4-v1.18 --port $port"
   run "$ATTEST" sim hover "$port" --rate 250:500
   [ "$status" -eq 0 ]
   has "px4-v1.18/flight/hover@250-500hz"
+  run "$ATTEST" record v1.17/rates/p_alone "$port" --out alone.csv
+  [ "$status" -eq 0 ]
+  run "$ATTEST" run "$port" --filter 'v1.17/rates/p_alone@250hz'
+  [ "$status" -eq 0 ]
+  has "PASS 1 vector passed"
+  run "$ATTEST" sim sticks "$port" # not the cases in open loop of this name
+  has "px4-v1.18/flight/sticks@250-1000hz"
   run "$ATTEST" record p_alone "$port" --out alone.csv
   [ "$status" -eq 0 ]
   head -1 alone.csv | grep -q out/rate_ctrl_status # of the rate unit

@@ -75,6 +75,7 @@ load common
   run "$ATTEST" replay --level exact "$trace"
   [ "$status" -eq 0 ]
   has "not set, because px4-v1.3.4 does not have them: MC_BAT_SCALE_EN, MC_TPA_BREAK, MC_TPA_SLOPE"
+  has "; --profile px4-v1.5.5 has them"
   run "$ATTEST" replay "$trace" --param MC_TPA_BREAK=0.5
   [ "$status" -eq 2 ]
 }
