@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <utility>
 
 #include "controller/faults/cascade_change.hpp"
@@ -111,13 +112,6 @@ void feed_measured_rates_forward(FaultyLaw& law) {
   });
 }
 
-template <typename Change>
-void change_torque_gains(FaultyLaw& law, Change change) {
-  change_gains(law.rate_unit, [change](RateUnitGains& gains, const CascadeParameters& p) {
-    change(gains.rate, p);
-  });
-}
-
 // The factor between x |x| and x^3 in an expo curve.
 Scalar squared_for_cubed(Scalar stick, Scalar share) {
   const Scalar x = std::abs(cascade::clamp(stick, -1.0f, 1.0f));
@@ -201,23 +195,13 @@ const Fault formula_list[] = {
        change_stage(law.rate_unit.rate.limited, [](const auto& then, Scalar next, Scalar before,
                                                    Scalar) { return then(next, before, 0.3f); });
      }},
-    {"cascade-int-lim-with-k", "parameters", Stage::parameters,
-     "multiplies the limits of the integral by K", "a K other than 1 and an error that lasts",
-     "a misplaced factor",
-     [](FaultyLaw& law) {
-       change_torque_gains(law, [](TorqueGains& gains, const CascadeParameters& p) {
-         gains.integral_max[0] *= p.mc_rollrate_k;
-         gains.integral_max[1] *= p.mc_pitchrate_k;
-         gains.integral_max[2] *= p.mc_yawrate_k;
-       });
-     }},
     {"cascade-i-in-ideal-form", "rates", Stage::parameters,
      "multiplies the integral gain by the P gain", "an error that lasts", "a misplaced factor",
      [](FaultyLaw& law) {
-       change_torque_gains(law, [](TorqueGains& gains, const CascadeParameters& p) {
-         gains.integral[0] *= p.mc_rollrate_p;
-         gains.integral[1] *= p.mc_pitchrate_p;
-         gains.integral[2] *= p.mc_yawrate_p;
+       change_gains(law.rate_unit, [](RateUnitGains& gains, const CascadeParameters& p) {
+         gains.rate.integral[0] *= p.mc_rollrate_p;
+         gains.rate.integral[1] *= p.mc_pitchrate_p;
+         gains.rate.integral[2] *= p.mc_yawrate_p;
        });
      }},
     {"cascade-i-by-trapezoids", "rates", Stage::i, "integrates with the trapezoidal rule",

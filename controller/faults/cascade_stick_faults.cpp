@@ -112,6 +112,18 @@ Scalar heading_from_east(const Quat& q, const CascadeTraits& law) {
   return elementary::atan2(R00, 2 * (q[1] * q[2] + q[0] * q[3]));
 }
 
+// Turns the tilt of a VTOL in another way. Turned is Quat(tilt, desired yaw, q_WB, lean of the
+// body).
+template <typename Turned>
+void turn_tilt(FaultyLaw& law, Turned turned) {
+  law.attitude_unit.sticks.tilt_for_yaw_error = [turned](const Quat& tilt, const Quat& desired,
+                                                         const Quat& q_WB) {
+    const Vector up(0, 0, 1);
+    const Quat lean = cascade::shortest_rotation(up, cascade::z_axis(q_WB));
+    return cascade::shortest_rotation(up, cascade::z_axis(turned(tilt, desired, q_WB, lean)));
+  };
+}
+
 const Fault stick_list[] = {
     {"cascade-sticks-exchanged", "sticks", Stage::sticks, "exchanges roll and pitch stick",
      "one of the sticks", "wrong axis",
@@ -289,27 +301,21 @@ const Fault stick_list[] = {
      "turns the tilt of a VTOL by the yaw error the other way",
      "a VTOL with a yaw error and a tilt", "a sign",
      [](FaultyLaw& law) {
-       law.attitude_unit.sticks.tilt_for_yaw_error = [](const Quat& tilt, const Quat& desired,
-                                                        const Quat& q_WB) {
-         const Vector up(0, 0, 1);
-         const Quat lean = cascade::shortest_rotation(up, cascade::z_axis(q_WB));
-         const Quat yaw = product(cascade::inverse(lean), q_WB);
-         const Quat turned = product(product(cascade::inverse(yaw), desired), tilt);
-         return cascade::shortest_rotation(up, cascade::z_axis(turned));
-       };
+       turn_tilt(law,
+                 [](const Quat& tilt, const Quat& desired, const Quat& q_WB, const Quat& lean) {
+                   const Quat yaw = product(cascade::inverse(lean), q_WB);
+                   return product(product(cascade::inverse(yaw), desired), tilt);
+                 });
      }},
     {"cascade-vtol-yaw-in-world", "sticks", Stage::sticks,
      "takes the yaw of a VTOL from the product in the other order",
      "a VTOL with a yaw error and a tilt", "factors exchanged",
      [](FaultyLaw& law) {
-       law.attitude_unit.sticks.tilt_for_yaw_error = [](const Quat& tilt, const Quat& desired,
-                                                        const Quat& q_WB) {
-         const Vector up(0, 0, 1);
-         const Quat lean = cascade::shortest_rotation(up, cascade::z_axis(q_WB));
-         const Quat yaw = product(q_WB, cascade::inverse(lean));
-         const Quat turned = product(product(cascade::inverse(desired), yaw), tilt);
-         return cascade::shortest_rotation(up, cascade::z_axis(turned));
-       };
+       turn_tilt(law,
+                 [](const Quat& tilt, const Quat& desired, const Quat& q_WB, const Quat& lean) {
+                   const Quat yaw = product(q_WB, cascade::inverse(lean));
+                   return product(product(cascade::inverse(desired), yaw), tilt);
+                 });
      }},
     {"cascade-vtol-tilt-for-all", "sticks", Stage::sticks,
      "turns the tilt of every vehicle like that of a VTOL", "a yaw error and a tilt",

@@ -18,6 +18,7 @@ namespace attest {
 Result<std::unique_ptr<Port>> open_fault(std::string_view ids,
                                          std::optional<int> fraction_bits = std::nullopt);
 
+// The same of the catalogue's own faults.
 std::unique_ptr<Port> open_faults(std::vector<const faults::Fault*> faults,
                                   std::optional<int> fraction_bits = std::nullopt);
 
