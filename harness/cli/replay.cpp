@@ -237,7 +237,8 @@ void add_law_options(Command command, ReplayOptions& options) {
   command
       .option("--profile", options.profile,
               "Version of the law; default for a trace: that of its provenance.toml, else "
-              "the newest released one with its unit; default for a log: the release of PX4 that "
+              "the newest released one with its unit and parameters; default for a log: the "
+              "release of PX4 that "
               "wrote it")
       .type("PROFILE")
       .rewritten(full_profile_name);

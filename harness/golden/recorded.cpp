@@ -50,24 +50,51 @@ bool is_one_of(const std::string& name, const std::vector<std::string>& names) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// The newest profile of a released version that has the module. Those of the cascade are newer.
-std::string newest_profile_of(Module module) {
-  const auto all = known_profiles();
-  const auto found = std::find_if(all.begin(), all.end(), [&](const ProfileInfo& profile) {
-    const bool is_newest =
-        !info_of(module).is_law() || contains(profile.modules, Module::rate_unit);
-    return contains(profile.modules, module) && is_newest && profile.as_of.empty();
+// Whether the profile has those of the trace's parameters that any profile has.
+bool has_parameters_of(const Trace& trace, const ProfileInfo& profile, Module module) {
+  const auto own = parameter_names(module, std::string(profile.name));
+  const auto all = parameter_names(module, "");
+  return std::ranges::none_of(trace.parameters, [&](const ParameterChange& change) {
+    return is_one_of(change.name, all) && !is_one_of(change.name, own);
   });
-  return std::string(found == all.end() ? default_profile : found->name);
 }
 
-Result<ModuleUnderTest> subject_of(const TraceParts& reader, const std::filesystem::path& file,
-                                   const std::string& profile, const std::string& mixer) {
+// Of a trace that does not say it: the newest profile of a released version that has the module. If
+// the trace has parameters that only other profiles have, the newest of these. `first` is the first
+// tick of the trace.
+std::string assumed_profile(const Trace& first, Module module) {
+  std::vector<const ProfileInfo*> candidates;  // the newest of a law first, released ones before
+  for (const bool released : {true, false}) {
+    for (const ProfileInfo& profile : known_profiles()) {
+      const bool is_newest =
+          !info_of(module).is_law() || contains(profile.modules, Module::rate_unit);
+      if (contains(profile.modules, module) && is_newest && profile.as_of.empty() == released) {
+        candidates.push_back(&profile);
+      }
+    }
+  }
+  if (candidates.empty()) return default_profile;
+  const auto found = std::ranges::find_if(
+      candidates, [&](const ProfileInfo* one) { return has_parameters_of(first, *one, module); });
+  return std::string(found == candidates.end() ? candidates.front()->name : (*found)->name);
+}
+
+// Adds a note if the profile is assumed.
+Result<ModuleUnderTest> subject_of(const TraceParts& reader, const Trace& first,
+                                   const std::string& profile, const std::string& mixer,
+                                   std::vector<std::string>& notes) {
+  const std::filesystem::path file = reader.file();
   const auto provenance = provenance_of(file);
   if (!provenance) return tl::unexpected(provenance.error());
   ModuleUnderTest subject{profile, module_of(reader.present())};
   if (subject.profile.empty()) subject.profile = provenance->profile;
-  if (subject.profile.empty()) subject.profile = newest_profile_of(subject.module);
+  if (subject.profile.empty()) {
+    subject.profile = assumed_profile(first, subject.module);
+    notes.push_back(
+        fmt::format("judged as {}, because no provenance.toml beside it says its "
+                    "release; --profile chooses another",
+                    subject.profile));
+  }
   if (subject.module == Module::mixer) {
     subject.mixer = mixer.empty() ? mixer_of(file, *provenance) : mixer;
   } else if (!mixer.empty()) {
@@ -113,13 +140,15 @@ Result<RecordedParts> RecordedParts::open(const std::filesystem::path& file,
                                           const std::string& profile, const std::string& mixer) {
   auto reader = read_as<&FileFormat::open>(file, TraceNeed::inputs_and_outputs);
   if (!reader) return tl::unexpected(reader.error());
-  auto subject = subject_of(**reader, file, profile, mixer);
-  if (!subject) return tl::unexpected(subject.error());
   // Each parameter of a file has a value at the first tick.
   Trace first;
   if (auto read = (*reader)->next_part(1, first); !read) return tl::unexpected(read.error());
+  std::vector<std::string> notes;
+  auto subject = subject_of(**reader, first, profile, mixer, notes);
+  if (!subject) return tl::unexpected(subject.error());
+  note_ignored(first.ignored_columns, notes);
   RecordedParts parts(*std::move(reader), *std::move(subject));
-  note_ignored(first.ignored_columns, parts.notes_);
+  parts.notes_ = std::move(notes);
   parts.adapt_parameters(first);
   if (parts.subject_.module == Module::mixer) {
     auto checked = check_mixer(parts.file(), parts.present(), parts.subject_.mixer);
@@ -127,17 +156,6 @@ Result<RecordedParts> RecordedParts::open(const std::filesystem::path& file,
   }
   if (auto begun = parts.rewind(); !begun) return tl::unexpected(begun.error());
   return parts;
-}
-
-// "; --profile px4-v1.18 has them": of the first profile that has the module and the parameters.
-std::string profile_with(Module module, const std::set<std::string>& parameters) {
-  for (const ProfileInfo& profile : known_profiles()) {
-    const auto own = parameter_names(module, std::string(profile.name));
-    const bool has_all = std::ranges::all_of(
-        parameters, [&](const std::string& name) { return is_one_of(name, own); });
-    if (has_all) return fmt::format("; --profile {} has them", profile.name);
-  }
-  return "";
 }
 
 // Leaves out the parameters that only other profiles have: a trace of one version of the law may
@@ -149,9 +167,8 @@ void RecordedParts::adapt_parameters(const Trace& first) {
     if (!is_one_of(change.name, own) && is_one_of(change.name, all)) foreign_.insert(change.name);
   }
   if (!foreign_.empty()) {
-    notes_.push_back(fmt::format("not set, because {} does not have them: {}{}", subject_.profile,
-                                 fmt::join(foreign_, ", "),
-                                 profile_with(subject_.module, foreign_)));
+    notes_.push_back(fmt::format("not set, because {} does not have them: {}", subject_.profile,
+                                 fmt::join(foreign_, ", ")));
   }
   if (subject_.module == Module::battery_status) give_cells(first);
 }

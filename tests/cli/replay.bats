@@ -69,13 +69,26 @@ load common
   [ "$status" -eq 1 ]
 }
 
+@test "a trace that does not say its release is judged by the newest that has its parameters" {
+  "$ATTEST" record v1.18/reference_model/events_change_no_state builtin --out new.csv
+  run "$ATTEST" replay new.csv
+  [ "$status" -eq 0 ]
+  has "new.csv: judged as px4-v1.18, because no provenance.toml beside it says its release"
+  "$ATTEST" record v1.16/rates/i_alone builtin --out released.csv
+  run "$ATTEST" replay released.csv
+  [ "$status" -eq 0 ]
+  has "released.csv: judged as px4-v1.16.0, because"
+  run "$ATTEST" replay released.csv --profile v1.18
+  [ "$status" -eq 0 ]
+  lacks "judged as"
+}
+
 @test "parameters that the profile does not have are not set" {
   trace="$SOURCE"/golden/recorded/px4-v1.3.4/fuzz_250hz.csv
   head -1 "$trace" | grep -q in/parameter.MC_TPA_BREAK
   run "$ATTEST" replay --level exact "$trace"
   [ "$status" -eq 0 ]
   has "not set, because px4-v1.3.4 does not have them: MC_BAT_SCALE_EN, MC_TPA_BREAK, MC_TPA_SLOPE"
-  has "; --profile px4-v1.5.5 has them"
   run "$ATTEST" replay "$trace" --param MC_TPA_BREAK=0.5
   [ "$status" -eq 2 ]
 }
