@@ -104,8 +104,10 @@ struct NotingRecovery : mc_att_control::RecoveryStages<double> {
   MarginNotes* notes;
 
   bool latch(bool recovering, double tilt_rad) const {
+    // A NaN in a quaternion gives ports a tilt of NaN, 0 or pi: the law does not say which.
+    const double from_limit = tilt_rad - mc_att_control::radians(recovering ? 5.0 : 30.0);
     notes->note(recovering ? Decision::recovery_end : Decision::recovery_begin,
-                tilt_rad - mc_att_control::radians(recovering ? 5.0 : 30.0));
+                std::isnan(tilt_rad) ? 0 : from_limit);
     return Law::latch(recovering, tilt_rad);
   }
   Vector3d optimal_rates(const mc_att_control::RecoveryTilt<double>& tilt) const {

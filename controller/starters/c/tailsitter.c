@@ -32,8 +32,9 @@ static float tilt_error(const float q[4], const float q_sp_conj[4], const float 
   rotation_matrix(q_err, R_err);
   multiply_vector(R_err, z_B, z_I);
   const float cosine = dot(z_I, z_B);
-  float tilt = cosine > 0.0f ? 0.0f : LAW_PI;
-  if (-1.0f < cosine && cosine < 1.0f) tilt = law_acos(cosine);
+  float tilt = law_acos(cosine);
+  if (cosine >= 1.0f) tilt = 0.0f;
+  if (cosine <= -1.0f) tilt = LAW_PI;
   if (fminf(fabsf(tilt), fabsf(tilt - LAW_PI)) > 1e-5f) cross(z_I, z_B, axis_I);
   transpose(R, Rt);
   multiply_vector(Rt, axis_I, axis);

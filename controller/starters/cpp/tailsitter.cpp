@@ -25,8 +25,9 @@ Tilt tilt_of(const AttitudeTask& task, const Mat3& R) noexcept {
   const Vec3 z_I = rotation_matrix(task.q * conjugate(task.q_d)) * z_B;
   const float cosine = dot(z_I, z_B);
   Tilt tilt;
-  tilt.angle = cosine > 0.0f ? 0.0f : pi;
-  if (-1.0f < cosine && cosine < 1.0f) tilt.angle = acos(cosine);
+  tilt.angle = acos(cosine);
+  if (cosine >= 1.0f) tilt.angle = 0.0f;
+  if (cosine <= -1.0f) tilt.angle = pi;
   const float to_parallel = std::fmin(std::fabs(tilt.angle), std::fabs(tilt.angle - pi));
   const Vec3 axis = R.transposed() * (to_parallel > 1e-5f ? cross(z_I, z_B) : z_B);
   tilt.direction = atan2(axis[0], axis[1]);

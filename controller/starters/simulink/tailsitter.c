@@ -37,10 +37,12 @@ static void tilt_error(const real32_T rtu_q[4], const real32_T rtu_q_sp_conj[4],
     rtb_Thrust[i] = -rtb_R[6 + i];
   }
   Cosine = -rtb_Thrust[2];
-  if (Cosine > -1.0F && Cosine < 1.0F) {
-    *rty_Angle = rt_acos(Cosine);
+  if (Cosine >= 1.0F) {
+    *rty_Angle = 0.0F;
+  } else if (Cosine <= -1.0F) {
+    *rty_Angle = RT_PIF;
   } else {
-    *rty_Angle = Cosine > 0.0F ? 0.0F : RT_PIF;
+    *rty_Angle = rt_acos(Cosine);
   }
   if (fminf(fabsf(*rty_Angle), fabsf(*rty_Angle - RT_PIF)) > 1.0E-5F) {
     rt_cross(rtb_Thrust, Down, rtb_Axis);

@@ -115,6 +115,13 @@ TEST(Margins, SticksAndTheRecovery) {
                   .is_safe(Decision::tilt_axis));
 }
 
+// The law does not say what the tilt is. Ports have NaN or pi.
+TEST(Margins, ARecoveryWithNanIsOnTheThreshold) {
+  const Margins nan =
+      margins_of("[parameters]\nVT_OPT_RECOV_EN = 1\n[control_state]\nq = [nan, 0, 0, 0]\n");
+  EXPECT_FALSE(nan.is_safe(Decision::recovery_begin));
+}
+
 // 750 LSB of 20 bits are more than the margin that floats need; 750 LSB of 40 bits are less.
 TEST(Margins, OfAPortInFixedPointAreAtLeastSomeOfItsLastBits) {
   EXPECT_EQ(least_margin(Decision::integrator_gate, std::nullopt), 1e-5);
