@@ -91,7 +91,7 @@ Result<ModuleUnderTest> subject_of(const TraceParts& reader, const Trace& first,
   if (subject.profile.empty()) {
     subject.profile = assumed_profile(first, subject.module);
     notes.push_back(
-        fmt::format("judged as {}, because no provenance.toml beside it says its "
+        fmt::format("judged as {}, because no provenance.toml next to it says its "
                     "release; --profile chooses another",
                     subject.profile));
   }

@@ -73,7 +73,7 @@ load common
   "$ATTEST" record v1.18/reference_model/events_change_no_state builtin --out new.csv
   run "$ATTEST" replay new.csv
   [ "$status" -eq 0 ]
-  has "new.csv: judged as px4-v1.18, because no provenance.toml beside it says its release"
+  has "new.csv: judged as px4-v1.18, because no provenance.toml next to it says its release"
   "$ATTEST" record v1.16/rates/i_alone builtin --out released.csv
   run "$ATTEST" replay released.csv
   [ "$status" -eq 0 ]

@@ -26,18 +26,29 @@ TEST(Recorded, AControllersTraceIsOfTheProfileThatItsProvenanceNames) {
   EXPECT_EQ(read->subject.profile, "px4-v1.3.4");
 }
 
-TEST(Recorded, WithoutProvenanceTheProfileIsTheNewestThatHasTheUnit) {
+// A trace of the unit with this parameter, without provenance.
+Recorded assumed(Module module, const std::string& parameter) {
   const TemporaryDirectory folder;
-  for (const Module module : {Module::attitude_unit, Module::rate_unit}) {
-    Trace trace = stimulate(unit_case_of(module, "px4-v1.14.4", ""), Rate::hz(250));
-    trace.present = channels_of(module);
-    const auto file = folder.path() / "trace.csv";
-    ASSERT_TRUE(write_csv(file, trace, all_columns(trace)));
-    const auto read = read_recorded(file);
-    ASSERT_TRUE(read) << read.error().to_string();
-    EXPECT_EQ(read->subject.module, module);
-    EXPECT_EQ(read->subject.profile, "px4-v1.16.0");
-  }
+  Trace trace = stimulate(unit_case_of(module, "px4-v1.14.4", ""), Rate::hz(250));
+  trace.present = channels_of(module);
+  trace.parameters.push_back({0, parameter, 1});
+  const auto file = folder.path() / "trace.csv";
+  EXPECT_TRUE(write_csv(file, trace, all_columns(trace)));
+  const auto read = read_recorded(file);
+  EXPECT_TRUE(read) << read.error().to_string();
+  EXPECT_EQ(read->subject.module, module);
+  return *read;
+}
+
+TEST(Recorded, WithoutProvenanceTheProfileIsTheNewestReleasedThatHasTheUnit) {
+  const Recorded attitude = assumed(Module::attitude_unit, "MC_YAW_WEIGHT");
+  EXPECT_EQ(attitude.subject.profile, "px4-v1.16.0");
+  EXPECT_THAT(attitude.notes, testing::ElementsAre(HasSubstr("judged as px4-v1.16.0, because")));
+  EXPECT_EQ(assumed(Module::rate_unit, "MC_ROLLRATE_K").subject.profile, "px4-v1.16.0");
+}
+
+TEST(Recorded, WithoutProvenanceTheProfileHasTheParametersOfTheTrace) {
+  EXPECT_EQ(assumed(Module::attitude_unit, "MC_REF_FF").subject.profile, "px4-v1.18");
 }
 
 TEST(Recorded, ColumnsThatAttestDoesNotHaveAreIgnoredWithANote) {
