@@ -47,6 +47,28 @@ std::string not_compared(const ChannelSet& outputs, const std::string& want) {
                      fmt::join(names_of(outputs), ", "));
 }
 
+// Other inputs make other outputs in the same law.
+std::string different_inputs_text(const Comparison& comparison, const CompareOptions& options) {
+  return fmt::format(
+      "  inputs differ from tick {} on: {}\n"
+      "  these traces do not tell whether the laws differ; record both with the same inputs and "
+      "parameters,\n"
+      "  or judge a port with the inputs of one trace: attest replay {} --port PORT\n",
+      comparison.inputs->tick, text_of(*comparison.inputs, options.got, options.want),
+      shell_word(options.want));
+}
+
+int report_difference(const Comparison& comparison, const CompareOptions& options, Level level) {
+  fmt::print("{} {} (got), {} (want){}\n", capitals(name_of(Conclusion::fail)), options.got,
+             options.want, not_compared(comparison.only_got, options.want));
+  if (!comparison.mismatch.empty()) fmt::print("  {}\n", comparison.mismatch);
+  const bool differ =
+      comparison.first && comparison.inputs && comparison.inputs->tick <= comparison.first->tick;
+  if (differ) fmt::print("{}", different_inputs_text(comparison, options));
+  fmt::print("{}", finding_text(as_result(comparison), level, differ));
+  return exit_failed;
+}
+
 Result<TimedSignals> signals_in(const std::string& file) {
   auto signals = read_as<&FileFormat::read_signals>(file);
   if (!signals) return signals;
@@ -151,13 +173,7 @@ int compare_command(const CompareOptions& options, const Globals& globals) {
   const auto compared = compare_ticks(options, Tolerances(*level));
   if (!compared) return report_error(compared.error());
   const Comparison& comparison = *compared;
-  if (!comparison.agrees()) {
-    fmt::print("{} {} (got), {} (want){}\n", capitals(name_of(Conclusion::fail)), options.got,
-               options.want, not_compared(comparison.only_got, options.want));
-    if (!comparison.mismatch.empty()) fmt::print("  {}\n", comparison.mismatch);
-    fmt::print("{}", finding_text(as_result(comparison), *level));
-    return exit_failed;
-  }
+  if (!comparison.agrees()) return report_difference(comparison, options, *level);
   if (!globals.quiet || comparison.only_got.any()) {
     fmt::print("{} {} ticks, {}", capitals(name_of(Conclusion::pass)), comparison.ticks,
                name_of(*level));

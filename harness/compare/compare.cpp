@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <map>
 #include <tuple>
 #include <vector>
 
@@ -65,12 +64,18 @@ bool is_before(const Deviation& a, const Deviation& b) {
   return std::tuple(a.timestamp_us, stage_of(a)) < std::tuple(b.timestamp_us, stage_of(b));
 }
 
+Comparison with_inputs(Comparison comparison, const InputComparer& inputs) {
+  comparison.inputs = inputs.first();
+  return comparison;
+}
+
 }  // namespace
 
 Result<Comparison> compare(TraceParts& got, TraceParts& want, const Tolerances& tolerances) {
   const bool is_whole = tolerances.level() == Level::events;
   const std::size_t most = is_whole ? whole_trace : 100;
   TickComparer comparer(got.present(), want.present(), tolerances);
+  InputComparer inputs(got.present(), want.present(), InputComparer::Compared::in_both);
   Trace got_part, want_part;
   std::size_t got_ticks = 0, want_ticks = 0;
   // Both are read to their end, so that an error anywhere in a file is reported.
@@ -79,12 +84,13 @@ Result<Comparison> compare(TraceParts& got, TraceParts& want, const Tolerances& 
     if (!read_got) return tl::unexpected(read_got.error());
     const auto read_want = want.next_part(most, want_part);
     if (!read_want) return tl::unexpected(read_want.error());
-    if (is_whole) return compare(got_part, want_part, tolerances);
+    inputs.add(got_part, want_part);
+    if (is_whole) return with_inputs(compare(got_part, want_part, tolerances), inputs);
     comparer.add(got_part, want_part);
     got_ticks += got_part.samples.size();
     want_ticks += want_part.samples.size();
   } while (!got_part.samples.empty() || !want_part.samples.empty());
-  return comparer.finish(got_ticks, want_ticks);
+  return with_inputs(comparer.finish(got_ticks, want_ticks), inputs);
 }
 
 Comparison both(Comparison one, const Comparison& other) {
@@ -288,54 +294,6 @@ std::optional<Deviation> first_non_finite(const Trace& got, const Trace& want) {
       return deviation_at(tick, i, got, after == want.samples.begin() ? none : *(after - 1));
     }
   }
-  return std::nullopt;
-}
-
-namespace {
-
-// The parameters in force at each tick, for ticks in ascending order.
-class ParametersInForce {
- public:
-  explicit ParametersInForce(const Trace& trace) : pending_(trace.parameters) {}
-
-  const std::map<std::string, float>& at(std::size_t tick) {
-    for (const ParameterChange& change : pending_.take_until(tick)) {
-      values_[change.name] = change.value;
-    }
-    return values_;
-  }
-
- private:
-  PendingChanges pending_;
-  std::map<std::string, float> values_;
-};
-
-bool same_parameters(const std::map<std::string, float>& a, const std::map<std::string, float>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
-    return x.first == y.first && same_bits(x.second, y.second);
-  });
-}
-
-bool same_inputs(const Sample& a, const Sample& b, Module module) {
-  const auto table = channels();
-  return std::all_of(table.begin(), table.end(), [&](const Channel& channel) {
-    const bool is_timestamp = &channel == &table.front();
-    if (channel.is_output() || (channel.module != module && !is_timestamp)) return true;
-    return same_bits(channel, a, b);
-  });
-}
-
-}  // namespace
-
-std::optional<std::size_t> first_input_difference(const Trace& a, const Trace& b) {
-  const std::size_t common = std::min(a.samples.size(), b.samples.size());
-  const Module module = module_of(a.present | b.present);
-  ParametersInForce of_a(a), of_b(b);
-  for (std::size_t tick = 0; tick < common; ++tick) {
-    if (!same_inputs(a.samples[tick], b.samples[tick], module)) return tick;
-    if (!same_parameters(of_a.at(tick), of_b.at(tick))) return tick;
-  }
-  if (a.samples.size() != b.samples.size()) return common;
   return std::nullopt;
 }
 

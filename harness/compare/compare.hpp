@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "harness/compare/allowed_deviation.hpp"
+#include "harness/compare/input_difference.hpp"
 #include "harness/compare/tolerance.hpp"
 #include "harness/core/result.hpp"
 #include "harness/trace/trace_parts.hpp"
@@ -66,13 +67,14 @@ struct Comparison {
   std::string event;                 // at the events level: the difference at the first deviation
   ChannelSet only_got;               // outputs that only `got` has: they are not compared
   bool got_non_finite = false;       // at any tick, a NaN or Inf where the golden is finite
+  std::optional<InputDifference> inputs;  // the first one, of two TraceParts
 
   bool agrees() const { return !first && mismatch.empty(); }
 };
 
 Comparison compare(const Trace& got, const Trace& want, const Tolerances& tolerances);
 // The traces are read part by part, in memory that does not grow with their length; whole at the
-// events level, which looks ahead. Errors: those of TraceParts.
+// events level, which looks ahead. Also compares their inputs. Errors: those of TraceParts.
 Result<Comparison> compare(TraceParts& got, TraceParts& want, const Tolerances& tolerances);
 
 // Combines the comparisons of two traces of one flight: takes the earlier first deviation, at equal
@@ -115,9 +117,5 @@ class TickComparer {
   AllowedDeviation allowed_;
   Comparison result_;
 };
-
-// Index of the first tick whose inputs differ by bits (in/..., parameters in force, timestamp). If
-// only the lengths differ, the shorter length; empty when all agree.
-std::optional<std::size_t> first_input_difference(const Trace& a, const Trace& b);
 
 }  // namespace attest

@@ -9,7 +9,7 @@
 #include "harness/casefile/log_case.hpp"
 #include "harness/casefile/parse.hpp"
 #include "harness/casefile/stimulus.hpp"
-#include "harness/compare/compare.hpp"
+#include "harness/compare/input_difference.hpp"
 #include "harness/core/error_json.hpp"
 #include "harness/diagnosis/hunt_shrink.hpp"
 #include "harness/verify/verdict_json.hpp"
@@ -127,9 +127,9 @@ Result<std::string> case_of(const HuntInputs& inputs, Level level, const HuntRea
       text, fmt::format("cases/{}/{}/trial.toml", inputs.subject.profile, hunt_group));
   if (!parsed) return tl::unexpected(parsed.error());
   const Trace made = stimulate(*parsed, inputs.rate);
-  if (const auto tick = first_input_difference(made, *trace)) {
-    return fail(fmt::format("a case does not make the inputs of its trial from tick {} on:\n{}",
-                            *tick, text));
+  if (const auto found = first_input_difference(made, *trace)) {
+    return fail(fmt::format("a case does not make the inputs of its trial from tick {} on: {}\n{}",
+                            found->tick, text_of(*found, "the case", "the trial"), text));
   }
   return text;
 }

@@ -51,11 +51,14 @@ std::string of_unit(const Channel& channel) {
 
 std::string first_deviation(const Deviation& deviation, Level level) {
   const Channel& channel = channels()[deviation.channel];
+  return fmt::format("  first at tick {}, timestamp {} us, in {}\n{}{}", deviation.tick,
+                     deviation.timestamp_us, channel_with_unit(channel) + of_unit(channel),
+                     values(channel, deviation), indented_distance(deviation, level));
+}
+
+std::string where_to_look(const Deviation& deviation) {
   return fmt::format(
-      "  first at tick {}, timestamp {} us, in {}\n{}{}"
       "  look first at the {}: no output of an earlier stage deviates up to this tick\n",
-      deviation.tick, deviation.timestamp_us, channel_with_unit(channel) + of_unit(channel),
-      values(channel, deviation), indented_distance(deviation, level),
       stages_text(stages_of(deviation)));
 }
 
@@ -167,9 +170,10 @@ std::string reproduce_command(const VectorResult& result, const RunResult& run) 
   return one_line(out);
 }
 
-std::string finding_text(const VectorResult& result, Level level) {
+std::string finding_text(const VectorResult& result, Level level, bool inputs_differ) {
   std::string out;
   if (result.first) out += first_deviation(*result.first, level);
+  if (result.first && !inputs_differ) out += where_to_look(*result.first);
   if (const std::string worst = worst_text(result); !worst.empty()) {
     out += fmt::format("  worst at {}\n", worst);
   }

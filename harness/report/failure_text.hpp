@@ -16,9 +16,11 @@ std::string failure_headline(const VectorResult& result);
 // level for the command that reproduces the failure.
 std::string failure_text(const VectorResult& result, const RunResult& run);
 
-// The first deviation, the worst one and the number of deviating ticks, without id and commands:
-// for traces outside the suite. Empty if the result has no deviation.
-std::string finding_text(const VectorResult& result, Level level);
+// The first deviation, the stage of the law to look at, the worst deviation and the number of
+// deviating ticks, without id and commands: for traces outside the suite. Empty if the result has
+// no deviation. `inputs_differ`: those of got and want, up to the first deviation; then no stage is
+// named, because other inputs make other outputs in the same law.
+std::string finding_text(const VectorResult& result, Level level, bool inputs_differ = false);
 
 // "tick 412, in out/...: off by 0.3, 1500 times the tolerance". The worst deviation; empty if that
 // is the first deviation, or unknown.

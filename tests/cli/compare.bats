@@ -21,6 +21,22 @@ load common
   has "1 of 300 ticks deviate"
 }
 
+@test "other inputs and parameters are named, and the law is not blamed" {
+  trace="$SOURCE"/golden/recorded/px4-v1.5.5/tracking_100hz.csv
+  awk -F, -v OFS=, -v name=in/control_state.q[0] -v out=out/vehicle_rates_setpoint.roll '
+    NR == 1 { for (i = 1; i <= NF; ++i) { if ($i == name) c = i; if ($i == out) o = i } }
+    NR > 1 { $c = 9 }
+    NR == 12 { $o = $o + 0.5 }
+    1' "$trace" >changed.csv
+  run "$ATTEST" compare changed.csv "$trace"
+  [ "$status" -eq 1 ]
+  has "inputs differ from tick 0 on: in/control_state.q[0] is 9 in changed.csv and "
+  has "these traces do not tell whether the laws differ"
+  has "attest replay $trace --port PORT"
+  has "first at tick 10"
+  lacks "look first at"
+}
+
 @test "traces of other length or rate are not compared" {
   trace="$SOURCE"/golden/recorded/px4-v1.5.5/tracking_100hz.csv
   head -n 100 "$trace" >short.csv

@@ -3,13 +3,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/compare/compare.hpp"
+#include "harness/compare/input_difference.hpp"
 #include "tests/harness/compare/sample_trace.hpp"
 
 namespace attest {
 namespace {
 
+using testing::Field;
 using testing::Optional;
+
+// The first difference is at this tick.
+auto at_tick(std::size_t tick) { return Optional(Field(&InputDifference::tick, tick)); }
 
 TEST(FirstInputDifference, ThereIsNoneBetweenTheSame) {
   const Trace trace = sample_trace(3);
@@ -28,7 +32,7 @@ TEST(FirstInputDifference, SeesEveryInput) {
     if (what.is_output()) {
       EXPECT_EQ(found, std::nullopt) << what.name;
     } else {
-      EXPECT_THAT(found, Optional(1u)) << what.name;
+      EXPECT_THAT(found, at_tick(1)) << what.name;
     }
   }
 }
@@ -36,25 +40,25 @@ TEST(FirstInputDifference, SeesEveryInput) {
 TEST(FirstInputDifference, IsOfBits) {
   Trace a = sample_trace(2), b = a;
   set(a, 1, "in/manual_control_setpoint.x", -0.0);
-  EXPECT_THAT(first_input_difference(a, b), Optional(1u));
+  EXPECT_THAT(first_input_difference(a, b), at_tick(1));
   set(a, 1, "in/manual_control_setpoint.x", nan);
   set(b, 1, "in/manual_control_setpoint.x", -nan);
   EXPECT_EQ(first_input_difference(a, b), std::nullopt);
 }
 
 TEST(FirstInputDifference, ALongerTraceDiffersWhereTheOtherEnds) {
-  EXPECT_THAT(first_input_difference(sample_trace(2), sample_trace(3)), Optional(2u));
-  EXPECT_THAT(first_input_difference(sample_trace(3), sample_trace(0)), Optional(0u));
+  EXPECT_THAT(first_input_difference(sample_trace(2), sample_trace(3)), at_tick(2));
+  EXPECT_THAT(first_input_difference(sample_trace(3), sample_trace(0)), at_tick(0));
 }
 
 TEST(FirstInputDifference, SeesParametersInForce) {
   Trace a = sample_trace(4), b = a;
   a.parameters = {{0, "MC_ROLL_P", 5}, {2, "MC_ROLL_P", 6}};
-  EXPECT_THAT(first_input_difference(a, b), Optional(0u));
+  EXPECT_THAT(first_input_difference(a, b), at_tick(0));
   b.parameters = {{0, "MC_ROLL_P", 5}};
-  EXPECT_THAT(first_input_difference(a, b), Optional(2u));
+  EXPECT_THAT(first_input_difference(a, b), at_tick(2));
   b.parameters = {{0, "MC_ROLL_P", 5}, {2, "MC_PITCH_P", 6}};
-  EXPECT_THAT(first_input_difference(a, b), Optional(2u));
+  EXPECT_THAT(first_input_difference(a, b), at_tick(2));
   // The same values set again, or in another order, are no difference.
   a.parameters = {{0, "MC_ROLL_P", 5}, {0, "MC_PITCH_P", 6}};
   b.parameters = {{0, "MC_PITCH_P", 6}, {0, "MC_ROLL_P", 5}, {2, "MC_ROLL_P", 5}};

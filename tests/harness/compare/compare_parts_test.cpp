@@ -72,6 +72,26 @@ TEST_F(ComparePartsTest, ATimestampThatIsAnotherEndsIt) {
   EXPECT_FALSE(other->first);
 }
 
+TEST_F(ComparePartsTest, TellTheFirstInputThatDiffers) {
+  Trace want = sample_trace(300);  // three parts
+  want.parameters = {{0, "MC_ROLL_P", 6.5}, {250, "MC_ROLL_P", 7}};
+  set(want, 250, "in/updated.parameter_update", 1);
+  EXPECT_FALSE(compared(want, want)->inputs);
+  Trace got = want;
+  got.parameters = {};  // a trace need not record its parameters
+  EXPECT_FALSE(compared(got, want)->inputs);
+  got.parameters = {{0, "MC_ROLL_P", 6.5}};
+  const auto parameter = compared(got, want)->inputs;
+  ASSERT_TRUE(parameter);
+  EXPECT_EQ(parameter->tick, 250u);
+  EXPECT_EQ(text_of(*parameter, "a", "b"), "in/parameter.MC_ROLL_P is 6.5 in a and 7 in b");
+  set(got, 203, "in/manual_control_setpoint.x", 0.25);
+  const auto input = compared(got, want)->inputs;
+  ASSERT_TRUE(input);
+  EXPECT_EQ(input->tick, 203u);
+  EXPECT_EQ(input->column, "in/manual_control_setpoint.x");
+}
+
 TEST_F(ComparePartsTest, AMistakeBehindTheShorterTraceIsReported) {
   const auto a = write("got.csv", sample_trace(2)), b = write("want.csv", sample_trace(5));
   std::string text = *read_file(b);

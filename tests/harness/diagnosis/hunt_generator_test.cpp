@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/compare/compare.hpp"
+#include "harness/compare/input_difference.hpp"
 #include "harness/diagnosis/hunt_lacks.hpp"
 #include "harness/diagnosis/hunt_trace.hpp"
 #include "harness/golden/recorded.hpp"

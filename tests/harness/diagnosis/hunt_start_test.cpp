@@ -5,7 +5,7 @@
 
 #include "harness/casefile/parse.hpp"
 #include "harness/casefile/stimulus.hpp"
-#include "harness/compare/compare.hpp"
+#include "harness/compare/input_difference.hpp"
 #include "harness/diagnosis/hunt_job.hpp"
 #include "harness/port/profiles.hpp"
 

@@ -5,6 +5,7 @@
 
 #include "harness/casefile/stimulus.hpp"
 #include "harness/compare/compare.hpp"
+#include "harness/compare/input_difference.hpp"
 #include "harness/host/manifest.hpp"
 #include "tests/harness/casefile/case_files.hpp"
 #include "tests/harness/golden/blessed.hpp"
