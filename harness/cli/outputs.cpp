@@ -149,4 +149,11 @@ Result<void> prepare_trace_folder(const std::string& folder, const std::string& 
   return fail_at(folder, "cannot be written: " + std::generic_category().message(errno));
 }
 
+std::string attitude_unit_file(const std::string& file) {
+  if (file.empty() || file == "-") return {};
+  std::filesystem::path path = file;
+  const std::string extension = path.extension().string();
+  return path.replace_extension(".attitude_unit" + extension).string();
+}
+
 }  // namespace attest::cli

@@ -35,4 +35,8 @@ Result<void> check_output_folder(const std::string& folder, const std::string& s
 // For a command that adds cases to the suite of a user. Errors: `suite` is that of this attest.
 Result<void> check_own_suite(const std::string& suite);
 
+// The file of the attitude unit's trace, next to the rate unit's: "flown.attitude_unit.csv". Empty:
+// that trace is not written, because `file` is empty, or is stdout, which takes one trace.
+std::string attitude_unit_file(const std::string& file);
+
 }  // namespace attest::cli

@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/cli/outputs.hpp"
 #include "harness/core/error_json.hpp"
 #include "harness/host/file_format.hpp"
 #include "harness/report/failure_text.hpp"
@@ -45,7 +47,21 @@ class FileReplay {
     auto recorded = recorded_in(file_, options_);
     if (!recorded) return tl::unexpected(recorded.error());
     found_.notes = recorded->notes();
+    note_other_unit();
     return judge_trace(*recorded, recorded->subject());
+  }
+
+  // `attest sim` writes a flight of two units to two files.
+  void note_other_unit() {
+    const std::string other = attitude_unit_file(file_);
+    const auto& files = options_.files;
+    std::error_code unknown;
+    if (!std::filesystem::exists(other, unknown)) return;
+    if (std::find(files.begin(), files.end(), other) != files.end()) return;
+    found_.notes.push_back(
+        fmt::format("the attitude unit of this flight is in {}; to judge both units, give both "
+                    "files",
+                    other));
   }
 
   // A page shows the whole trace. Without one, the trace need not be in memory as a whole.

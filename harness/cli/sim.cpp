@@ -45,15 +45,6 @@ constexpr const char* default_rates_of_units = "250:1000";
 
 constexpr const char* outputs_deviate = "outputs deviate from the reference's for the same inputs";
 
-// The file of the attitude unit's trace, next to the rate unit's: "flown.attitude_unit.csv". Empty:
-// that trace is not written, because there is no --out, or --out is stdout, which takes one trace.
-std::string attitude_file(const std::string& out) {
-  if (out.empty() || out == "-") return {};
-  std::filesystem::path file = out;
-  const std::string extension = file.extension().string();
-  return file.replace_extension(".attitude_unit" + extension).string();
-}
-
 // The same flight on one plant or on several.
 struct Sim {
   Case the_case;
@@ -105,7 +96,7 @@ Result<Sim> prepare(const SimOptions& options, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!suite) return tl::unexpected(suite.error());
   const auto checked =
-      check_outputs({options.out, attitude_file(options.out), options.html},
+      check_outputs({options.out, attitude_unit_file(options.out), options.html},
                     {options.host.port, {options.timing, options.case_name}}, globals.suite);
   if (!checked) return tl::unexpected(checked.error());
   if (!options.timing.empty()) return prepare_timed(options, *suite);
@@ -119,7 +110,7 @@ struct SimFiles {
   static Result<SimFiles> open(const SimOptions& options) {
     auto out = AtomicFile::open(options.out);
     if (!out) return tl::unexpected(out.error());
-    auto attitude = AtomicFile::open(attitude_file(options.out));
+    auto attitude = AtomicFile::open(attitude_unit_file(options.out));
     if (!attitude) return tl::unexpected(attitude.error());
     auto html = AtomicFile::open(options.html);
     if (!html) return tl::unexpected(html.error());
@@ -224,7 +215,7 @@ void print(const VectorResult& result, const SimOptions& options, bool is_writte
   std::vector<std::string> files;
   if (result.ticks > 0 && !options.out.empty()) {
     files.push_back(options.out);
-    if (result.rate.attitude_unit) files.push_back(attitude_file(options.out));
+    if (result.rate.attitude_unit) files.push_back(attitude_unit_file(options.out));
   }
   if (is_written) files.push_back(options.html);
   std::erase_if(files, [](const std::string& file) { return file.empty() || file == "-"; });

@@ -17,7 +17,10 @@ load common
   "$ATTEST" sim sticks --rate 100:400 --out flown.csv
   head -1 flown.csv | grep -q "out/rate_ctrl_status.rollspeed_integ"
   head -1 flown.attitude_unit.csv | grep -q "out/vehicle_attitude_setpoint.q_d"
+  run "$ATTEST" replay --profile px4-v1.18 flown.csv
+  has "the attitude unit of this flight is in flown.attitude_unit.csv; to judge both units"
   run "$ATTEST" replay --profile px4-v1.18 --level exact flown.csv flown.attitude_unit.csv
+  lacks "to judge both units"
   [ "$status" -eq 0 ]
 }
 
