@@ -123,7 +123,7 @@ std::string suspects_text(const Diagnosis& diagnosis) {
     return fmt::format(
         "it looks like no fault of the catalogue; {} of {} deviate first in the {}\n",
         diagnosis.in_first_stage, counted(diagnosis.failing, "failing vector"),
-        name_of(diagnosis.first_stage.value_or(Stage::input)));
+        stages_text(only(diagnosis.first_stage.value_or(Stage::input))));
   }
   std::string out;
   for (const Suspect& suspect : diagnosis.suspects)
@@ -194,8 +194,8 @@ std::string first_stages(const RunResult& run) {
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < counts.size(); ++i) {
     if (counts[i] == 0) continue;
-    parts.push_back(
-        fmt::format("{} in {}", name_of(static_cast<Stage>(i)), counted(counts[i], "vector")));
+    const std::string stage = stages_text(only(static_cast<Stage>(i)));
+    parts.push_back(fmt::format("{} in {}", stage, counted(counts[i], "vector")));
   }
   if (parts.empty()) return {};
   return fmt::format("first stage to differ: {}", fmt::join(parts, ", "));

@@ -57,6 +57,11 @@ std::string first_deviation(const Deviation& deviation, Level level) {
 }
 
 std::string where_to_look(const Deviation& deviation) {
+  if (stages_of(deviation) == only(Stage::input)) {
+    return "  each output agrees with the reference's for the same inputs, so look first at "
+           "vectors that\n"
+           "  are no flights: small differences of outputs add up in a flight\n";
+  }
   return fmt::format(
       "  look first at the {}: no output of an earlier stage deviates up to this tick\n",
       stages_text(stages_of(deviation)));
@@ -132,6 +137,7 @@ std::string failure_headline(const VectorResult& result) {
 }
 
 std::string stages_text(const StageSet& stages) {
+  if (stages == only(Stage::input)) return "flight as a whole";
   std::vector<std::string_view> names = names_of(stages);
   if (names.empty()) return {};
   const std::string_view last = names.back();

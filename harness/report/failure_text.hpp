@@ -26,7 +26,8 @@ std::string finding_text(const VectorResult& result, Level level, bool inputs_di
 // is the first deviation, or unknown.
 std::string worst_text(const VectorResult& result);
 
-// "rate law or the integrator", of Deviation::stages.
+// "rate law or the integrator", of Deviation::stages. "flight as a whole" of the input: each output
+// is right for its input, which differs from the golden's.
 std::string stages_text(const StageSet& stages);
 
 // "at most 1.2", "at least 0", "0 to 3".

@@ -112,6 +112,14 @@ TEST(FailureText, WordsOfAPortStayOnTheirLine) {
               HasSubstr("  protocol: line one PASS all is well\\x1b[2J\n"));
 }
 
+TEST(FindingText, OfAFlightWhoseOutputsAreRightForTheirInputsBlamesNoStage) {
+  Deviation first = deviation("out/vehicle_rates_setpoint.roll", 17, -1.5F, -1, 0.125);
+  first.stages = only(Stage::input);
+  EXPECT_THAT(finding_text(failing(first), Level::numeric),
+              HasSubstr("  each output agrees with the reference's for the same inputs, so look"));
+  EXPECT_THAT(failure_headline(failing(first)), HasSubstr("want -1 (flight as a whole)"));
+}
+
 TEST(FindingText, IsTheDifferenceWithoutTheCase) {
   const VectorResult result = failing(deviation("out/actuator_controls_0.published", 3, 0, 1, 0));
   EXPECT_EQ(
