@@ -169,8 +169,8 @@ int new_port_command(const NewPortOptions& options, const Globals& globals) {
       "{0} has a complete port in {1}. Replace its law by yours; README.md says where.\n"
       "  {0}/check                   builds it and runs the whole suite\n"
       "  {0}/check --group {2}  builds it and runs one group: all options of `attest run`\n"
-      "  .github/ and .gitlab-ci.yml there run check in CI, with a package of attest that you "
-      "add\n",
+      "  .github/ and .gitlab-ci.yml there run check in CI; add the package from which you "
+      "installed attest ({0}/install-attest says how)\n",
       options.folder, language->title, language->group);
   return exit_ok;
 }

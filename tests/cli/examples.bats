@@ -3,25 +3,36 @@
 load common
 
 # installed: runs install-attest in an empty folder, with stand-ins for the programs that it calls.
-# They write their arguments to ./called.
+# They write their arguments to ./called. FAKES_ONLY: without the programs of this machine.
 installed() {
   fake apt-get <<<'echo "apt-get $*" >>"$CALLED"'
   fake curl <<<'echo "curl $*" >>"$CALLED"; [ -z "$OFFLINE" ]'
   export CALLED=$PWD/called OFFLINE=${OFFLINE-} PREFIX=$PWD/usr
   rm -f called
-  PATH="$PWD/fakes:$PATH" run sh "$SOURCE/ci/examples/install-attest"
+  PATH="$PWD/fakes${FAKES_ONLY-:$PATH}" run /bin/sh "$SOURCE/ci/examples/install-attest"
 }
 
 @test "without a package of attest, CI says what to do" {
   unset ATTEST_PACKAGE_URL
   for url in unset ""; do
     [ "$url" = unset ] || export ATTEST_PACKAGE_URL=$url # GitHub sets a missing variable to ""
-    installed
+    FAKES_ONLY="" installed
     [ "$status" -eq 2 ]
     has "install-attest: there is no package of attest. Add attest_VERSION_amd64.deb"
-    has "set the CI variable ATTEST_PACKAGE_URL"
+    has "variable ATTEST_PACKAGE_URL to its URL"
+    has "the file from which you installed attest"
     [ ! -e called ]
   done
+}
+
+@test "CI uses the attest of its image, if there is no package" {
+  unset ATTEST_PACKAGE_URL
+  fake attest <<<'echo "attest 9.8.7"'
+  echo gcc >packages.txt
+  installed
+  [ "$status" -eq 0 ]
+  grep -q "^apt-get install .* gcc$" called
+  has "install-attest: attest 9.8.7 is installed already"
 }
 
 @test "CI takes the package from the repository, or from a URL" {
