@@ -32,6 +32,12 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+// "px4-v1.18" of "px4-v1.18.0": a release without its last number.
+std::string_view release_of(std::string_view name) {
+  const std::size_t dot = std::min(name.find('.'), name.size());
+  return name.substr(0, name.find('.', dot + 1));
+}
+
 }  // namespace
 
 std::string suggestion(std::string_view unknown, const std::vector<std::string>& candidates) {
@@ -45,10 +51,16 @@ std::string suggestion(std::string_view unknown, const std::vector<std::string>&
       return fmt::format("; did you mean `{}`?", candidate);
     }
   }
-  for (const std::string& candidate : candidates) {  // px4-v1.16 and v1.16 for px4-v1.16.0
+  // px4-v1.16 and v1.16 for px4-v1.16.0, px4-v1.18.0 and v1.18.0 for px4-v1.18
+  const std::string_view release = release_of(unknown);
+  for (const std::string& candidate : candidates) {
     const std::string begin = std::string(unknown) + ".";
     const std::size_t part = candidate.find('-') + 1;  // 0: it has one part
-    if (candidate.starts_with(begin) || candidate.compare(part, begin.size(), begin) == 0) {
+    const bool is_release = release.size() < unknown.size() &&
+                            (release_of(candidate) == release ||
+                             release_of(std::string_view(candidate).substr(part)) == release);
+    if (is_release || candidate.starts_with(begin) ||
+        candidate.compare(part, begin.size(), begin) == 0) {
       return fmt::format("; did you mean `{}`?", candidate);
     }
   }

@@ -266,6 +266,7 @@ wrong() {
     sim hover --out no/x.csv
   wrong "no profile \`v1.6\`; there are px4-v1.5.5, " replay good.csv --profile v1.6
   wrong "no cases of profile \`1.5.5\`; did you mean \`px4-v1.5.5\`?" run --profile 1.5.5
+  wrong "no cases of profile \`px4-v1.18.0\`; did you mean \`px4-v1.18\`?" run --profile px4-v1.18.0
   wrong "--within: \`-1\` is no number of at least 0; " replay good.csv --within -1
   wrong "--at-least: \`2\` is no number from 0 to 1; " replay good.csv --at-least 2
   wrong "--jobs: \`x\` is no whole number from 1 to 1024; " run --jobs x

@@ -44,6 +44,14 @@ TEST(Suggestion, NamesACandidateOfWhichTheBeginningIsGiven) {
   EXPECT_EQ(suggestion("px4-v1.1", profiles), "; did you mean `px4-v1.17`?");  // by its letters
 }
 
+TEST(Suggestion, NamesTheReleaseOfWhichTheLastNumberIsAnother) {
+  const std::vector<std::string> profiles = {"px4-v1.18", "px4-v1.16.0", "px4-v1.15.4"};
+  EXPECT_EQ(suggestion("px4-v1.18.0", profiles), "; did you mean `px4-v1.18`?");
+  EXPECT_EQ(suggestion("v1.18.0", profiles), "; did you mean `px4-v1.18`?");
+  EXPECT_EQ(suggestion("px4-v1.15.0", profiles), "; did you mean `px4-v1.15.4`?");
+  EXPECT_EQ(suggestion("px4-v1.19.0", profiles), "; did you mean `px4-v1.16.0`?");  // its letters
+}
+
 TEST(Suggestion, AllowsAThirdOfTheLength) {
   EXPECT_EQ(suggestion("control_state.q[0]", {"in/control_state.q[0]"}),
             "; did you mean `in/control_state.q[0]`?");
