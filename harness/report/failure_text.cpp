@@ -197,8 +197,12 @@ std::string failure_text(const VectorResult& result, const RunResult& run) {
   const std::string id = result.case_id();
   if (const auto why = run.whys.find(id); why != run.whys.end() && !why->second.empty())
     out += fmt::format("  it tests:  {}\n", one_line(why->second));
-  if (const auto file = run.case_files.find(id); file != run.case_files.end())
-    out += fmt::format("  case:      {}\n", one_line(file->second));
+  if (const auto file = run.case_files.find(id); file != run.case_files.end()) {
+    // The folder is the first of the profiles that share the file.
+    const bool is_own = file->second.find(result.profile + "/") != std::string::npos;
+    out += fmt::format("  case:      {}{}\n", one_line(file->second),
+                       is_own ? "" : fmt::format(" (also of {})", one_line(result.profile)));
+  }
   const auto golden = run.golden_files.find(id);
   if (golden != run.golden_files.end() && result.first && run.command == "run" &&
       run.timing.empty()) {

@@ -64,6 +64,14 @@ print(json.load(open("report.json"))["diagnosis"]["specific_case"]["why"])')
   has "most specific failing case: px4-v1.5.5/"
 }
 
+@test "a case file of several releases is named as such" {
+  failing=(run --port fault:cascade-d-reversed --filter 'rates/d_alone@250hz' --no-diagnose)
+  run "$ATTEST" "${failing[@]}" --profile v1.18
+  has "cases/px4-v1.16.0/rates/d_alone.toml (also of px4-v1.18)"
+  run "$ATTEST" "${failing[@]}" --profile v1.16
+  lacks "also of"
+}
+
 @test "all mistakes of a port are listed, also those that act everywhere at once" {
   faults=cascade-rate-dt-fixed+cascade-rates-setpoint-late+cascade-i-of-this-step
   faults+=+cascade-yaw-ff-on-body-z

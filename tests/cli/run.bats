@@ -396,7 +396,8 @@ for file in map(pathlib.Path, sys.argv[1:]):
     if file.suffix == ".json":
         print("\n".join(entry["location"]["path"] for entry in json.loads(text)))
     else:
-        print("\n".join(re.findall(r"^ +(?:case|golden): +(.*)$", text, re.MULTILINE)))
+        path = r"^ +(?:case|golden): +(.*?)(?: \(also .*)?$"
+        print("\n".join(re.findall(path, text, re.MULTILINE)))
 PATHS
 }
 
