@@ -53,9 +53,9 @@ std::vector<PlotBound> lines_of_bounds(const Metric& metric, const Plot& plot);
 Document flight_document(const std::vector<SimulatedFlight>& flights, const Declarations& port,
                          const FlightBackground& background = {});
 
-// "PASS the metrics are within their bounds; the outputs agree ..." It names the flight whose
-// verdict the document has. `is_reference`: the reference flew, so there was no other flight to
-// compare with. REQUIRES: a flight has that verdict.
+// "PASS the metrics are within their bounds; the outputs agree ...", or "DIFFERS ..." if only the
+// metrics pass. It names the flight whose verdict the document has. `is_reference`: the reference
+// flew, so there was no other flight to compare with. REQUIRES: a flight has that verdict.
 std::string flight_conclusion(const std::vector<SimulatedFlight>& flights, const Document& document,
                               bool is_reference);
 
