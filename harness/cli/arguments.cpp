@@ -35,7 +35,9 @@ constexpr const char* description =
 
 constexpr const char* footer =
     "\nFirst steps (`attest help COMMAND` has more):\n"
-    "  attest new-port mine --lang c                  make a folder with a complete port\n"
+    "  attest new-port mine --lang c                  make a folder with a complete port of "
+    "v1.5.5\n"
+    "                                                 (c_cascade: of v1.14 to v1.18)\n"
     "  mine/check                                     build it as mine/port.so, and run all cases\n"
     "  attest run mine/port.so --rate 250             run all cases at one rate\n"
     "  attest run mine/port.so --level exact --filter 'attitude/*@250hz'\n"

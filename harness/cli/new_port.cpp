@@ -13,6 +13,7 @@
 #include "harness/cli/outputs.hpp"
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
+#include "harness/core/file.hpp"
 #include "harness/core/suggestion.hpp"
 #include "harness/process/program.hpp"
 
@@ -79,6 +80,10 @@ Result<Parts> find_parts() {
                *data / (is_installed ? "include" : "controller"),
                *data / (is_installed ? "ci" : "ci/examples")};
 }
+
+// What a build or a run leaves in the folder of a port.
+constexpr std::string_view ignored_by_git =
+    "build/\ntarget/\n__pycache__/\n*.so\n*.o\n*.elf\n/board\n";
 
 // Files and folders that a build leaves in a starter's folder.
 bool is_build_result(const fs::path& path) {
@@ -151,7 +156,7 @@ Result<Language> make_port(const NewPortOptions& options, const std::string& sui
   if (!parts) return tl::unexpected(parts.error());
   const auto made = make_new_folder(options.folder, [&](const fs::path& folder) -> Result<void> {
     lay_out(*parts, *language, folder);
-    return {};
+    return write_file(folder / ".gitignore", ignored_by_git);
   });
   if (!made) return tl::unexpected(made.error());
   return language;

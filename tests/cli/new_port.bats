@@ -25,6 +25,9 @@ made() {
   grep -q "./check --github" mine/.github/actions/attest/action.yml
   grep -q "./check --html" mine/.gitlab-ci.yml
   [ -x mine/install-attest ]
+  # Only what `new-port` made is there for git.
+  git init -q mine
+  [ -z "$(git -C mine status --short -uall | grep -E '\.(so|o|elf|pyc)$|/(build|target)/|board$')" ]
 }
 
 @test "a new port in C" { made c cc; }
