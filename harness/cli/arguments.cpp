@@ -152,6 +152,10 @@ std::optional<int> parse(CLI::App& app, int argc, char** argv) {
     return exit_usage;
   }
   const std::string word = argc > 1 ? argv[1] : "";
+  if (word == "version" && argc == 2) {
+    fmt::print("attest {}\n", version);
+    return exit_ok;
+  }
   if (!word.empty() && !word.starts_with('-')) {
     const std::string wrong = unknown_command(app, word);
     if (!wrong.empty()) return report_error({wrong});

@@ -87,6 +87,14 @@ HINTS
   has "no cases of profile \`v1\`"
 }
 
+@test "attest version is the same as --version" {
+  run "$ATTEST" --version
+  local version=$output
+  run "$ATTEST" version
+  [ "$status" -eq 0 ]
+  [ "$output" = "$version" ]
+}
+
 @test "attest alone begins with new-port" {
   run "$ATTEST"
   [ "$status" -eq 2 ]
