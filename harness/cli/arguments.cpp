@@ -229,7 +229,8 @@ int run_command_line(int argc, char** argv) {
     if (const auto suite = find_suite(globals.suite); !suite) return report_error(suite.error());
   }
   hide_suites(globals);
-  return action();
+  const std::string wrong = wrong_port(app, globals);
+  return wrong.empty() ? action() : report_error({wrong});
 }
 
 }  // namespace attest::cli

@@ -14,7 +14,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/casefile/select.hpp"
+#include "harness/cli/shared_arguments.hpp"
+#include "harness/cli/suite_folder.hpp"
+#include "harness/core/file.hpp"
 #include "harness/core/suggestion.hpp"
+#include "harness/core/suite_files.hpp"
+#include "harness/report/text.hpp"
 
 namespace attest::cli {
 namespace {
@@ -171,6 +177,65 @@ std::string wrong_value(const CLI::App& app) {
     }
   }
   return "";
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// The script `check` of `attest new-port`, which calls attest itself.
+bool is_check_script(const std::string& file) {
+  if (fs::path(file).filename() != "check") return false;
+  const auto text = read_file(file);
+  return text && text->starts_with("#!") && text->find("attest run --port") != std::string::npos;
+}
+
+// How a command line names a case.
+struct CaseWords {
+  std::string name;   // "attitude/roll"; empty: it is no case
+  std::string suite;  // of --suite; empty: it is not needed
+};
+
+CaseWords words_of(const std::string& given, const Globals& globals) {
+  const auto suite = find_suite(globals.suite);
+  const fs::path file = given;
+  if (given.ends_with(".toml") && is_suite_file(file)) {
+    const fs::path group = file.parent_path();
+    const fs::path root = group.parent_path().parent_path().parent_path();
+    std::error_code unknown;
+    const bool is_other = !suite || !fs::equivalent(root, suite->root, unknown);
+    return {(group.filename() / file.stem()).string(), is_other ? root.string() : globals.suite};
+  }
+  Selection selection;
+  selection.filters = {full_case_name(given)};
+  const bool is_case = suite && select_cases(suite->case_folders(), selection);
+  return {is_case ? given : "", globals.suite};
+}
+
+}  // namespace
+
+std::string wrong_port(const CLI::App& app, const Globals& globals) {
+  const CLI::App& command = *app.get_subcommands().front();
+  const CLI::Option* option = command.get_option_no_throw("port");
+  if (option == nullptr || option->count() == 0) option = command.get_option_no_throw("--port");
+  if (option == nullptr || option->count() == 0) return "";
+  const std::string given = option->results().back();
+  if (const std::string file = argument_of(given); is_check_script(file)) {
+    return fmt::format(
+        "{0} builds a port and runs attest itself: start it with the options of `attest run`, such "
+        "as `{0} --rate 250`, or name the port that it builds",
+        file);
+  }
+  if (!kind_of(given).prefix.empty()) return "";
+  const CaseWords words = words_of(given, globals);
+  if (words.name.empty()) return "";
+  for (const char* takes : {"--case", "--filter"}) {
+    if (command.get_option_no_throw(takes) == nullptr) continue;
+    const std::string suite = words.suite.empty() ? "" : " --suite " + shell_word(words.suite);
+    return fmt::format("{} is a case, not a port; write: attest{} {} {} {}", given, suite,
+                       command.get_name(), takes, shell_word(words.name));
+  }
+  return given + " is a case, not a port";
 }
 
 }  // namespace attest::cli

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "harness/cli/globals.hpp"
+
 namespace CLI {
 class App;
 class ParseError;
@@ -22,5 +24,9 @@ std::string wrong_usage(const CLI::App& app, const CLI::ParseError& error);
 // After parsing. Finds values that no option accepts: an empty text, for example from an unset
 // shell variable, and NaN and infinity, which pass the range checks of CLI11.
 std::string wrong_value(const CLI::App& app);
+
+// What is given as the port, but is a case, or the script that judges a port; with the command that
+// was meant. Empty: neither.
+std::string wrong_port(const CLI::App& app, const Globals& globals);
 
 }  // namespace attest::cli

@@ -50,12 +50,19 @@ commands=(run hunt replay sim stress sweep sweep-rate schedule time compare plot
 @test "what only another command takes is answered with what this one has" {
   cp "$STARTER" mine.so
   touch check
+  make_suite
+  "$ATTEST" new-port made --lang c
   while read -r command hint; do
     run "$ATTEST" ${command//+/ }
     [ "$status" -eq 2 ]
     has "$hint"
   done <<'HINTS'
 sim+hover+--profile+v1.16 unknown option `--profile`; the profile is a part of the case
+stress+hover hover is a case, not a port; write: attest stress --case hover
+run+p_alone p_alone is a case, not a port; write: attest run --filter p_alone
+run+suite/cases/px4-v1.5.5/attitude/roll.toml write: attest --suite suite run --filter attitude/roll
+run+made/check+--rate+250 made/check builds a port and runs attest itself: start it
+smoke+hover hover is a case, not a port
 list+faults too many arguments: `faults`; `attest faults --list` lists them
 list+--faults `attest faults --list`
 plot+--out+F+a.csv the page is --html F
