@@ -224,6 +224,8 @@ int run_command_line(int argc, char** argv) {
   app.footer(footer);  // last: commands copy the footer that exists when they are added
   const auto ended = parse(app, argc, argv);
   if (ended) return *ended;
+  globals.words.assign(argv + 1, argv + argc);
+  globals.words.erase(std::ranges::find(globals.words, app.get_subcommands().front()->get_name()));
   if (!globals.suite.empty()) {
     // Also if the command reads no suite: else the barrier would hide another one.
     if (const auto suite = find_suite(globals.suite); !suite) return report_error(suite.error());

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/casefile/parse.hpp"
 #include "harness/casefile/select.hpp"
@@ -25,29 +26,44 @@ void keep_law(const LoopRate& rate, std::vector<SelectedCase>& found) {
   std::erase_if(found, [&](const SelectedCase& one) { return !is_of_law(one); });
 }
 
-// Keeps only flights, unless no case is one.
-void keep_flights(std::vector<SelectedCase>& found) {
-  const auto is_flight = [](const SelectedCase& one) { return one.the_case.flight.has_value(); };
-  if (std::none_of(found.begin(), found.end(), is_flight)) return;
-  std::erase_if(found, [&](const SelectedCase& one) { return !is_flight(one); });
+// Keeps only flights, or the cases in open loop of these modules, unless no case is one.
+void keep_kind(const std::optional<ModuleSet>& open_loop_of, std::vector<SelectedCase>& found) {
+  const auto is_meant = [&](const SelectedCase& one) {
+    if (!open_loop_of) return one.the_case.flight.has_value();
+    return !one.the_case.flight && contains(*open_loop_of, one.the_case.module);
+  };
+  if (std::none_of(found.begin(), found.end(), is_meant)) return;
+  std::erase_if(found, [&](const SelectedCase& one) { return !is_meant(one); });
 }
 
-// `rate`: of a flight.
-Result<Case> find_case(const std::string& name, const SuiteFolder& suite,
-                       const std::optional<LoopRate>& rate) {
+// A case file, in the profile if one is given.
+Result<Case> read_case(const CaseChoice& choice) {
+  auto parsed = parse_case(choice.name);
+  if (!parsed || choice.profile.empty()) return parsed;
+  if (std::ranges::find(parsed->profiles, choice.profile) != parsed->profiles.end()) {
+    return parsed->in_profile(choice.profile);
+  }
+  return fail_at(choice.name, fmt::format("is no case of {}, but of {}", choice.profile,
+                                          fmt::join(parsed->profiles, ", ")));
+}
+
+// `rate`: of a flight; `open_loop_of`: of a case in open loop. One of them is given.
+Result<Case> find_case(const CaseChoice& choice, const SuiteFolder& suite,
+                       const std::optional<LoopRate>& rate,
+                       const std::optional<ModuleSet>& open_loop_of) {
+  const std::string& name = choice.name;
   if (port_of_file(name).starts_with("lib:")) {
     return fail(fmt::format("{} is a port, not a case; write the case before it", name));
   }
   // A folder may have the name of a case by chance, so it is not a case file.
-  if (is_suite_file(name) || name.ends_with(".toml")) return parse_case(name);
+  if (is_suite_file(name) || name.ends_with(".toml")) return read_case(choice);
   Selection selection;
   selection.filters = {full_case_name(name)};
+  if (!choice.profile.empty()) selection.profiles = {choice.profile};
   auto found = select_cases(suite.case_folders(), selection);
   if (!found) return tl::unexpected(found.error());
-  if (rate) {
-    keep_flights(*found);
-    keep_law(*rate, *found);
-  }
+  keep_kind(open_loop_of, *found);
+  if (rate) keep_law(*rate, *found);
   const Case& first = found->front().the_case;
   for (const SelectedCase& one : *found) {
     if (one.the_case.group == first.group && one.the_case.name == first.name) continue;
@@ -76,28 +92,34 @@ Result<PlantConfiguration> find_plant_configuration(const Case& the_case,
 
 }  // namespace
 
-Result<Case> find_flight(const std::string& name, const LoopRate& rate, const SuiteFolder& suite) {
-  auto the_case = find_case(name, suite, rate);
+Result<Case> find_flight(const CaseChoice& choice, const LoopRate& rate, const SuiteFolder& suite) {
+  auto the_case = find_case(choice, suite, rate, std::nullopt);
   if (the_case && !the_case->flight) {
-    return fail_at(the_case->file.string(),
-                   "has no [flight]: its inputs are scripted; `attest run` runs it");
+    return fail(fmt::format("{} has no [flight]: its inputs are scripted; `attest run` runs it",
+                            the_case->id()));
   }
   return the_case;
 }
 
-Result<Case> find_open_loop_case(const std::string& name, const SuiteFolder& suite) {
-  auto the_case = find_case(name, suite, std::nullopt);
+Result<Case> find_open_loop_case(const CaseChoice& choice, const SuiteFolder& suite,
+                                 const ModuleSet& modules) {
+  auto the_case = find_case(choice, suite, std::nullopt, modules);
   if (the_case && the_case->flight) {
-    return fail_at(the_case->file.string(),
-                   "is a flight; `attest sim --out F` flies it and writes its trace");
+    return fail(fmt::format("{} is a flight; `attest sim --out F` flies it and writes its trace",
+                            the_case->id()));
   }
   return the_case;
 }
 
-Result<ChosenFlight> choose_flight(const std::string& name, const LoopRate& rate,
+LoopRate rate_of_flight(const Case& the_case, const LoopRate& given) {
+  if (!the_case.attitude_loop || given.attitude_unit) return given;
+  return {std::min(Rate::hz(250), given.motor_unit), given.motor_unit};
+}
+
+Result<ChosenFlight> choose_flight(const CaseChoice& choice, const LoopRate& rate,
                                    const std::string& vehicle, const std::string& plant,
                                    const SuiteFolder& suite) {
-  auto the_case = find_flight(name, rate, suite);
+  auto the_case = find_flight(choice, rate, suite);
   if (!the_case) return tl::unexpected(the_case.error());
   auto plant_configuration = find_plant_configuration(*the_case, vehicle, plant);
   if (!plant_configuration) return tl::unexpected(plant_configuration.error());
@@ -110,7 +132,7 @@ Result<ChosenFlight> choose_flight(const std::string& name, const LoopRate& rate
 Result<TimedFlight> find_timed_flight(const std::string& file, const SuiteFolder& suite) {
   auto timing = read_timing(file);
   if (!timing) return tl::unexpected(timing.error());
-  auto the_case = find_flight(timing->case_id, timing->configuration.rate, suite);
+  auto the_case = find_flight({timing->case_id, ""}, timing->configuration.rate, suite);
   if (!the_case) return tl::unexpected(the_case.error());
   if (the_case->sha256 != timing->case_sha256) {
     return fail_at(file, fmt::format("was recorded with another {}: the file has changed since",

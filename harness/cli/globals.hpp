@@ -23,6 +23,7 @@ enum Exit : int {
 struct Globals {
   std::string suite;   // folder with cases/ and golden/; empty: find_suite() searches for it
   bool quiet = false;  // print only failures and errors
+  std::vector<std::string> words;  // the command line as it was given, without the command
   // The barrier of all ports (HostOptions::barrier). The command line completes it.
   std::shared_ptr<BarrierOptions> barrier = std::make_shared<BarrierOptions>();
 };
@@ -33,6 +34,12 @@ int report_error(const Error& error);
 
 // Errors: those of LoopRate::parse().
 Result<std::vector<LoopRate>> parse_rates(const std::vector<std::string>& texts);
+
+// A case as the command line names it.
+struct CaseChoice {
+  std::string name;     // of its file; or its name, a pattern or its id
+  std::string profile;  // empty: not given
+};
 
 // --filter, --exclude, --group, --profile, --rate, --vehicle, --plant, --core, --core-flights,
 // --shard and --rerun-failed, as text until they are used.

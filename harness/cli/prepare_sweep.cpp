@@ -25,7 +25,8 @@ Result<FlightSampler> make_sampler(const SweepOptions& options, const SuiteFolde
   if (!sweep) return tl::unexpected(sweep.error());
   if (!options.vehicle.empty()) sweep->vehicle = options.vehicle;
   if (!options.plant.empty()) sweep->plant = options.plant;
-  auto chosen = choose_flight(sweep->case_name, sweep->rate, sweep->vehicle, sweep->plant, suite);
+  auto chosen =
+      choose_flight({sweep->case_name, ""}, sweep->rate, sweep->vehicle, sweep->plant, suite);
   if (!chosen) {
     Error error = chosen.error();
     if (error.file.empty()) error.file = options.file;

@@ -23,7 +23,7 @@ namespace {
 struct ScheduleOptions {
   std::string tasks;  // file
   std::string times;  // file of `attest time --json`; empty: the execution times of the task file
-  std::string case_name = "flight/tilt_step_30";
+  CaseChoice flight{"flight/tilt_step_30", ""};
   std::string vehicle, plant;
   HostOptions host;
   std::string record_timing;
@@ -92,7 +92,7 @@ Result<SchedulePlan> make_plan(const ScheduleOptions& options, const SuiteFolder
   auto set = read_task_set(options.tasks, *measured);
   if (!set) return tl::unexpected(set.error());
   const auto chosen =
-      choose_flight(options.case_name, set->rate(), options.vehicle, options.plant, suite);
+      choose_flight(options.flight, set->rate(), options.vehicle, options.plant, suite);
   if (!chosen) return tl::unexpected(chosen.error());
   SchedulePlan plan;
   plan.host = options.host;
@@ -128,7 +128,7 @@ int schedule_command(const ScheduleOptions& options, const Globals& globals) {
   if (!suite) return report_error(suite.error());
   const auto checked = check_outputs(
       {options.record_timing},
-      {options.host.port, {options.tasks, options.times, options.case_name}}, globals.suite);
+      {options.host.port, {options.tasks, options.times, options.flight.name}}, globals.suite);
   if (!checked) return report_error(checked.error());
   auto timing = AtomicFile::open(options.record_timing);
   if (!timing) return report_error(timing.error());
@@ -152,7 +152,7 @@ int schedule_command(const ScheduleOptions& options, const Globals& globals) {
     if (fails_a_run(result.verdict)) return exit_failed;
     if (result.verdict != Verdict::pass) {
       return report_error(
-          supported_instead(options.host, {result.profile}, hover_command("attest sim"))
+          supported_instead(options.host, {result.profile}, hover_command("attest sim", {}, "", ""))
               .value_or(Error{fmt::format("no flight took place: {}", result.reason)}));
     }
   }
@@ -177,7 +177,7 @@ void add_schedule(const CommandLine& line) {
               "Report of `attest time --json`: the slowest steps are the execution times of the "
               "units, in place of `execution_us`")
       .type("F.json");
-  add_case(command, options->case_name);
+  add_case(command, options->flight);
   add_plant(command, options->vehicle, options->plant);
   add_port(command, options->host);
   command

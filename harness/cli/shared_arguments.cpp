@@ -97,10 +97,16 @@ Option add_rates(Command command, std::vector<std::string>& rates, const char* w
       .one_each_time();
 }
 
-void add_case(Command command, std::string& case_name) {
-  command.option("--case", case_name, "The flight: the name or id of a case, or a case file")
-      .type("CASE")
-      .shows_default();
+Option add_case(Command command, CaseChoice& choice, const char* name, const char* what) {
+  const Option added =
+      command.option(name, choice.name, what).type("CASE").rewritten(full_case_name);
+  command
+      .option(
+          "--profile", choice.profile,
+          "Version of the law; default: the newest that has the case and that the port supports")
+      .type("PROFILE")
+      .rewritten(full_profile_name);
+  return choice.name.empty() ? added : added.shows_default();
 }
 
 void add_plant(Command command, std::string& vehicle, std::string& plant, const char* usual_vehicle,

@@ -24,8 +24,9 @@ enum class Selects : std::uint8_t { all_vectors, open_loop };
 void add_selection(Command command, SelectionOptions& options,
                    Selects selects = Selects::all_vectors);
 Option add_rates(Command command, std::vector<std::string>& rates, const char* what);
-// --case: the flight.
-void add_case(Command command, std::string& case_name);
+// The case, with --profile. `name` is that of the option or argument.
+Option add_case(Command command, CaseChoice& choice, const char* name = "--case",
+                const char* what = "The flight: the name or id of a case, or a case file");
 void add_plant(Command command, std::string& vehicle, std::string& plant,
                const char* usual_vehicle = "the lead vehicle of the case",
                const char* usual_plant = "the first plant of the case");

@@ -30,7 +30,7 @@ namespace attest::cli {
 namespace {
 
 struct SimOptions {
-  std::string case_name;  // with `rate`; empty with `timing`
+  CaseChoice flight;  // with `rate`; empty with `timing`
   std::string rate;
   std::string vehicle, plant;  // empty: the lead vehicle and the first plant of the case
   std::string timing;
@@ -54,9 +54,9 @@ struct Sim {
 };
 
 Result<Sim> prepare_timed(const SimOptions& options, const SuiteFolder& suite) {
-  if (!options.case_name.empty() || !options.rate.empty() || !options.vehicle.empty() ||
-      !options.plant.empty()) {
-    return fail("--timing sets case, rate, vehicle and plant; leave them out");
+  if (!options.flight.name.empty() || !options.flight.profile.empty() || !options.rate.empty() ||
+      !options.vehicle.empty() || !options.plant.empty()) {
+    return fail("--timing sets case, profile, rate, vehicle and plant; leave them out");
   }
   auto flight = find_timed_flight(options.timing, suite);
   if (!flight) return tl::unexpected(flight.error());
@@ -67,7 +67,7 @@ Result<Sim> prepare_timed(const SimOptions& options, const SuiteFolder& suite) {
 }
 
 Result<Sim> prepare_case(const SimOptions& options, const SuiteFolder& suite) {
-  if (options.case_name.empty()) return fail("needs a case, or --timing");
+  if (options.flight.name.empty()) return fail("needs a case, or --timing");
   const bool on_all = options.plant == all_plants;
   if (on_all && !options.out.empty()) {
     return fail("--out writes one flight; name its plant instead of `all`");
@@ -75,10 +75,11 @@ Result<Sim> prepare_case(const SimOptions& options, const SuiteFolder& suite) {
   auto rate = LoopRate::parse(options.rate.empty() ? default_rate : options.rate);
   if (!rate) return tl::unexpected(rate.error());
   auto chosen =
-      choose_flight(options.case_name, *rate, options.vehicle, on_all ? "" : options.plant, suite);
+      choose_flight(options.flight, *rate, options.vehicle, on_all ? "" : options.plant, suite);
   if (!chosen) return tl::unexpected(chosen.error());
   const bool has_two_units = chosen->the_case.attitude_loop.has_value();
   if (options.rate.empty() && has_two_units) rate = LoopRate::parse(default_rates_of_units);
+  rate = rate_of_flight(chosen->the_case, *rate);
   if (auto few = check_ticks(chosen->the_case, *rate); !few) return tl::unexpected(few.error());
   std::vector<RunConfiguration> configurations;
   for (const PlantKind plant : plant_kinds) {
@@ -97,7 +98,7 @@ Result<Sim> prepare(const SimOptions& options, const Globals& globals) {
   if (!suite) return tl::unexpected(suite.error());
   const auto checked =
       check_outputs({options.out, attitude_unit_file(options.out), options.html},
-                    {options.host.port, {options.timing, options.case_name}}, globals.suite);
+                    {options.host.port, {options.timing, options.flight.name}}, globals.suite);
   if (!checked) return tl::unexpected(checked.error());
   if (!options.timing.empty()) return prepare_timed(options, *suite);
   return prepare_case(options, *suite);
@@ -131,22 +132,18 @@ Result<std::vector<SimulatedFlight>> fly_all(const Sim& sim, const HostOptions& 
   return flights;
 }
 
-// The flight of the same name in the first profile that has it and that the port supports. Empty:
-// there is no such profile, its law does not fly at --rate, or the flight is not chosen by a name
-// without a profile.
+// The same flight in a profile that the port supports. Empty: flight_for_port() finds none.
 std::optional<Sim> flight_of_port(const SimOptions& options, const Sim& sim,
                                   const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   if (!options.timing.empty() || !suite) return std::nullopt;
-  for (const std::string& id : ids_for_port(options.case_name, sim.the_case, options.host)) {
-    SimOptions in_profile = options;
-    in_profile.case_name = id;
-    auto other = prepare_case(in_profile, *suite);
-    if (!other) continue;
-    const auto attitude_rate = other->configurations.front().rate.attitude_unit;
-    if (other->the_case.attitude_loop.has_value() == attitude_rate.has_value()) return *other;
-  }
-  return std::nullopt;
+  const auto rate = LoopRate::parse(options.rate.empty() ? default_rate : options.rate);
+  const auto flight = flight_for_port(options.flight, sim.the_case, *rate, *suite, options.host);
+  if (!flight) return std::nullopt;
+  SimOptions in_profile = options;
+  in_profile.flight = *flight;
+  auto other = prepare_case(in_profile, *suite);
+  return other ? std::optional(*std::move(other)) : std::nullopt;
 }
 
 // The flights and their document.
@@ -234,7 +231,7 @@ int sim_command(const SimOptions& options, const Globals& globals) {
   HostOptions host = options.host;
   const auto port = prepare_port(host, {sim->the_case.profile});
   if (!port) return report_error(port.error());
-  if (port->profiles.empty() && port->hangs.empty() && port->goes_wrong.empty()) {
+  if (supports_none(*port)) {
     if (auto other = flight_of_port(options, *sim, globals)) sim = *std::move(other);
   }
   const auto simulation = simulate(*sim, host, *port, !options.html.empty());
@@ -263,9 +260,10 @@ int sim_command(const SimOptions& options, const Globals& globals) {
     fmt::print(to, "{}\n", flight_conclusion(flights, document, host.port == HostOptions().port));
   }
   if (!any_result) {
-    return report_error(
-        supported_instead(options.host, {sim->the_case.profile}, hover_command("attest sim"))
-            .value_or(Error{"the port did not fly: no flight has a result"}));
+    return report_error(supported_instead(options.host, {sim->the_case.profile},
+                                          hover_command("attest sim", globals, options.flight.name,
+                                                        options.host.port))
+                            .value_or(Error{"the port did not fly: no flight has a result"}));
   }
   return any_fails ? exit_failed : exit_ok;
 }
@@ -278,15 +276,11 @@ void add_sim(const CommandLine& line) {
       line.add("sim",
                "Fly one case in simulation with a port, print the metrics, and write a trace or "
                "a page of the flight");
-  command
-      .option("case,--case", options->case_name,
-              "The flight: the name or id of a case, or a case file")
-      .type("CASE")
-      .rewritten(full_case_name);
+  add_case(command, options->flight, "case,--case");
   command
       .option("--rate", options->rate,
-              "Loop rate [Hz]; for v1.14 to v1.18 the rates of both units, such as 250:1000; "
-              "default: 250, and 250:1000")
+              "Loop rate [Hz]; for v1.14 to v1.18 the rates of both units, such as 250:1000, or "
+              "that of the rate unit, with the attitude unit at 250; default: 250, and 250:1000")
       .type("HZ");
   command
       .option("--timing", options->timing,

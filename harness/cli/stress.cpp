@@ -27,7 +27,7 @@ struct StressOptions {
   HostOptions host;
   std::vector<std::string> rates = {"250", "500", "1000", "2000", "4000", "8000"};
   double duration_s = 10;
-  std::string case_name = "flight/hover";
+  CaseChoice flight{"flight/hover", ""};
   std::string vehicle, plant;  // empty: the lead vehicle and the first plant of the case
   int load = 0;
   std::string load_kind = "cpu";
@@ -81,9 +81,6 @@ void set_budget(const StressOptions& options, RealtimeBudget& budget) {
 Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& suite) {
   const auto rates = parse_rates(options.rates);
   if (!rates) return tl::unexpected(rates.error());
-  auto chosen =
-      choose_flight(options.case_name, rates->front(), options.vehicle, options.plant, suite);
-  if (!chosen) return tl::unexpected(chosen.error());
   const auto live = live_options(options);
   if (!live) return tl::unexpected(live.error());
   const auto load = parse_load_kind(options.load_kind);
@@ -91,7 +88,6 @@ Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& su
   if (!options.record_timing.empty() && options.rates.size() != 1) {
     return fail("--record-timing records one rate; name it with --rates");
   }
-  Case& the_case = chosen->the_case;
   std::shared_ptr<AtomicFile> timing;
   if (!options.record_timing.empty()) {
     auto file = AtomicFile::open(options.record_timing);
@@ -100,20 +96,23 @@ Result<StressPlan> make_plan(const StressOptions& options, const SuiteFolder& su
   }
   StressPlan plan;
   plan.host = options.host;
-  auto port = prepare_port(plan.host, {the_case.profile});
-  if (!port) return tl::unexpected(port.error());
+  auto prepared = prepare_for_flight(options.flight, rates->front(), suite, plan.host);
+  if (!prepared) return tl::unexpected(prepared.error());
+  auto chosen =
+      choose_flight(prepared->choice, rates->front(), options.vehicle, options.plant, suite);
+  if (!chosen) return tl::unexpected(chosen.error());
 
+  Case& the_case = chosen->the_case;
   the_case.duration = {options.duration_s, Span::In::seconds};
   set_budget(options, the_case.flight->realtime);
   plan.load = *load;
-  plan.port = std::move(*port);
-  for (const LoopRate& rate : *rates) {
+  plan.port = std::move(prepared->port);
+  for (const LoopRate& given : *rates) {
+    const LoopRate rate = rate_of_flight(the_case, given);
     if (auto sane = check_rate(the_case, rate); !sane) return tl::unexpected(sane.error());
     if (auto few = check_ticks(the_case, rate, most_deadlines); !few) {
       return tl::unexpected(few.error());
     }
-  }
-  for (const LoopRate& rate : *rates) {
     plan.tasks.push_back({the_case, RunConfiguration{rate, chosen->plant_configuration},
                           chosen->vehicle_model, plan.port, *live,
                           nanoseconds(std::min(options.duration_s, idle_s_max)), timing});
@@ -203,7 +202,7 @@ int stress_command(const StressOptions& options, const Globals& globals) {
   if (!suite) return report_error(suite.error());
   const auto checked =
       check_outputs({options.html, options.json, options.junit, options.record_timing},
-                    {options.host.port, {options.case_name}}, globals.suite);
+                    {options.host.port, {options.flight.name}}, globals.suite);
   if (!checked) return report_error(checked.error());
   auto json = AtomicFile::open(options.json);
   if (!json) return report_error(json.error());
@@ -214,8 +213,9 @@ int stress_command(const StressOptions& options, const Globals& globals) {
   const auto plan = make_plan(options, *suite);
   if (!plan) return report_error(plan.error());
   if (plan->port.profiles.empty()) {
-    const auto instead = supported_instead(options.host, {plan->tasks.front().the_case.profile},
-                                           hover_command("attest stress --case"));
+    const auto instead = supported_instead(
+        options.host, {plan->tasks.front().the_case.profile},
+        hover_command("attest stress --case", globals, options.flight.name, options.host.port));
     if (instead) return report_error(*instead);
   }
 
@@ -322,12 +322,13 @@ void add_stress(const CommandLine& line) {
   add_port(command, options->host);
   add_port_argument(command, options->host);
   add_rates(command, options->rates,
-            "Loop rates [Hz], separated by commas; for v1.14 to v1.18 pairs such as 250:1000")
+            "Loop rates [Hz], separated by commas; for v1.14 to v1.18 pairs such as 250:1000, or "
+            "rates of the rate unit, with the attitude unit at 250")
       .shows_default("250,500,1000,2000,4000,8000");
   command.option("--duration", options->duration_s, "Duration of the flight at each rate [s]")
       .range(0.1, 3600.0)
       .shows_default();
-  add_case(command, options->case_name);
+  add_case(command, options->flight);
   add_plant(command, options->vehicle, options->plant);
   add_machine(command, *options);
   add_budgets(command, *options);

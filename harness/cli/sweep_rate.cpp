@@ -21,7 +21,7 @@ namespace attest::cli {
 namespace {
 
 struct RateSweepOptions {
-  std::string case_name = "flight/tilt_step_30";
+  CaseChoice flight{"flight/tilt_step_30", ""};
   std::vector<std::string> rates = {"50", "100", "250", "500", "1000"};
   std::vector<std::string> vehicles, plants;  // empty: all of the case
   HostOptions host;
@@ -61,18 +61,19 @@ Result<RateSweepPlan> make_plan(const RateSweepOptions& options, const SuiteFold
   auto rates = parse_rates(options.rates);
   if (!rates) return tl::unexpected(rates.error());
   plan.rates = *std::move(rates);
-  auto the_case = find_flight(options.case_name, plan.rates.front(), suite);
+  plan.host = options.host;
+  plan.host.stop = interrupted;
+  const auto prepared = prepare_for_flight(options.flight, plan.rates.front(), suite, plan.host);
+  if (!prepared) return tl::unexpected(prepared.error());
+  auto the_case = find_flight(prepared->choice, plan.rates.front(), suite);
   if (!the_case) return tl::unexpected(the_case.error());
-  for (const LoopRate& rate : plan.rates) {
+  for (LoopRate& rate : plan.rates) {
+    rate = rate_of_flight(*the_case, rate);
     if (auto sane = check_rate(*the_case, rate); !sane) return tl::unexpected(sane.error());
     if (auto few = check_ticks(*the_case, rate); !few) return tl::unexpected(few.error());
   }
   const auto plant_configurations = plant_configurations_of(*the_case, options);
   if (!plant_configurations) return tl::unexpected(plant_configurations.error());
-  plan.host = options.host;
-  plan.host.stop = interrupted;
-  const auto port = prepare_port(plan.host);
-  if (!port) return tl::unexpected(port.error());
   VehicleModels vehicle_models(suite.models());
   for (const PlantConfiguration& plant_configuration : *plant_configurations) {
     auto vehicle_model = vehicle_models.get(plant_configuration.vehicle);
@@ -81,7 +82,7 @@ Result<RateSweepPlan> make_plan(const RateSweepOptions& options, const SuiteFold
                                                        *std::move(vehicle_model), plan.host));
   }
   plan.the_case = std::move(*the_case);
-  plan.port = *port;
+  plan.port = prepared->port;
   return plan;
 }
 
@@ -89,7 +90,7 @@ int sweep_rate_command(const RateSweepOptions& options, const Globals& globals) 
   const auto suite = find_suite(globals.suite);
   if (!suite) return report_error(suite.error());
   const auto checked = check_outputs({options.csv, options.html},
-                                     {options.host.port, {options.case_name}}, globals.suite);
+                                     {options.host.port, {options.flight.name}}, globals.suite);
   if (!checked) return report_error(checked.error());
   auto csv = AtomicFile::open(options.csv);
   if (!csv) return report_error(csv.error());
@@ -116,7 +117,8 @@ int sweep_rate_command(const RateSweepOptions& options, const Globals& globals) 
                   [](const RateSweepResult& found) { return is_judged(found.result.verdict); });
   if (!any_result) {
     return report_error(supported_instead(options.host, {plan->the_case.profile},
-                                          hover_command("attest sweep-rate --case"))
+                                          hover_command("attest sweep-rate", globals,
+                                                        options.flight.name, options.host.port))
                             .value_or(Error{"the port did not fly: " +
                                             reason_text(outcome.results.front().result)}));
   }
@@ -144,12 +146,8 @@ void add_sweep_rate(const CommandLine& line) {
       line.add("sweep-rate",
                "Find for each vehicle the lowest loop rate and the largest delay of the motor "
                "commands at which a flight keeps its bounds");
-  command
-      .option("--case", options->case_name,
-              "The flight, whose metrics have the bounds: the name or id of a case, or a "
-              "case file")
-      .type("CASE")
-      .shows_default();
+  add_case(command, options->flight, "case,--case",
+           "The flight, whose metrics have the bounds: the name or id of a case, or a case file");
   add_rates(command, options->rates,
             "Loop rates at which the largest delay is searched [Hz]; for v1.14 to v1.18 "
             "pairs such as 250:1000")
@@ -165,6 +163,7 @@ void add_sweep_rate(const CommandLine& line) {
       .type("PLANT")
       .one_each_time();
   add_port(command, options->host);
+  add_port_argument(command, options->host);
   add_page(command, options->html, "a page with the limits, and with the metrics by rate");
   command.option("--csv", options->csv, "Write the table as CSV")
       .type("F.csv")

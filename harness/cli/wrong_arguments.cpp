@@ -25,18 +25,11 @@
 namespace attest::cli {
 namespace {
 
-constexpr std::string_view profile_is_in_id =
-    "; the profile is a part of the case: PROFILE/GROUP/NAME, of `attest list --profile PROFILE`";
-
 // What other commands have, with what this command has instead. An empty word is any argument.
 struct Elsewhere {
   std::string_view command, word, instead;
 };
 constexpr std::array elsewhere{
-    Elsewhere{"sim", "--profile", profile_is_in_id},
-    Elsewhere{"record", "--profile", profile_is_in_id},
-    Elsewhere{"stress", "--profile", profile_is_in_id},
-    Elsewhere{"sweep-rate", "--profile", profile_is_in_id},
     Elsewhere{"list", "faults", "; `attest faults --list` lists them"},
     Elsewhere{"list", "--faults", "; `attest faults --list` lists them"},
     Elsewhere{"list", "--case", "; --filter chooses cases"},

@@ -38,9 +38,13 @@ load common
   run "$ATTEST" sim hover --rate 250 --out old.csv
   [ "$status" -eq 0 ]
   has "px4-v1.5.5/flight/hover@250hz-iris-mujoco"
+  # Of the cascade, one rate is that of the rate unit.
   run "$ATTEST" sim px4-v1.16.0/flight/hover --rate 1000 --out old.csv
-  [ "$status" -eq 2 ]
-  has "needs two rates: that of the attitude unit and that of the rate unit, as in 250:1000"
+  [ "$status" -eq 0 ]
+  has "px4-v1.16.0/flight/hover@250-1000hz-iris-mujoco"
+  run "$ATTEST" sim hover --profile v1.16 --rate 100 --out old.csv
+  [ "$status" -eq 0 ]
+  has "px4-v1.16.0/flight/hover@100-100hz-iris-mujoco"
   run "$ATTEST" sim px4-v1.5.5/flight/hover --rate 250:1000 --out old.csv
   [ "$status" -eq 2 ]
   has "is a flight of the controller, which has one rate, as in 1000"
@@ -181,8 +185,20 @@ CHECK
   [ "$status" -eq 1 ]
 }
 
-@test "a flight of the cascade in real time needs a pair of rates" {
-  run "$ATTEST" stress --case px4-v1.16.0/flight/hover --rate 1000 "${open[@]}"
-  [ "$status" -eq 2 ]
-  has "needs two rates"
+@test "a port of the cascade flies its newest release, at one rate or at a pair" {
+  rate_only mine
+  run "$ATTEST" sim hover mine.so --rate 1000
+  [ "$status" -eq 0 ]
+  has "px4-v1.18/flight/hover@250-1000hz-iris-mujoco"
+  run "$ATTEST" sim hover mine.so --rate 1000 --profile v1.16
+  [ "$status" -eq 0 ]
+  has "px4-v1.16.0/flight/hover@250-1000hz-iris-mujoco"
+  run "$ATTEST" sweep-rate hover mine.so --rate 250 --vehicle iris --plant ode
+  [ "$status" -eq 0 ]
+  has "delay at 250:250 Hz"
+  for profile in v1.18 v1.16.0; do
+    run "$ATTEST" stress mine.so --rate 1000 --profile $profile "${open[@]}"
+    [ "$status" -eq 0 ] || [[ $output == *"not judged: 250:1000 Hz"* ]]
+    has "px4-$profile/flight/hover@250-1000hz-iris-mujoco"
+  done
 }

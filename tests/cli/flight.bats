@@ -63,6 +63,7 @@ broken() {
   [ ! -e page.html ]
   has "skip: the port does not support profile px4-v1.18"
   has "supports px4-v1.5.5, px4-v1.3.4, not px4-v1.18; write: attest sim px4-v1.5.5/flight/hover"
+  ends "* --rate 250 --port lib:* --html page.html" # with the other options that were given
 }
 
 @test "a port with a wrong sign loses its vehicle, and the verdict says when" {

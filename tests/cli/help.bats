@@ -57,7 +57,6 @@ commands=(run hunt replay sim stress sweep sweep-rate schedule time compare plot
     [ "$status" -eq 2 ]
     has "$hint"
   done <<'HINTS'
-sim+hover+--profile+v1.16 unknown option `--profile`; the profile is a part of the case
 stress+hover hover is a case, not a port; write: attest stress --case hover
 run+p_alone p_alone is a case, not a port; write: attest run --filter p_alone
 run+suite/cases/px4-v1.5.5/attitude/roll.toml write: attest --suite suite run --filter attitude/roll
@@ -186,6 +185,8 @@ completed() {
   [ "$output" = "attitude attitude_law" ]
   completed attest sim flip_150_lev
   [ "$output" = "flip_150_level" ]
+  completed attest sim --profile px4-v1.1
+  [ "$output" = "px4-v1.14.4 px4-v1.15.4 px4-v1.16.0 px4-v1.17 px4-v1.18" ]
   completed attest run --vehicle h
   [ "$output" = "heavy_quad hexa hummingbird" ]
   completed attest run --json ""
@@ -270,6 +271,8 @@ zpty -w -n shell $'\C-uattest faults quat-order-s\t\t'
 zpty -r -m shell line "*takes the setpoint's quaternion as x, y, z, w*"
 zpty -w -n shell $'\C-uattest sim hover_\t\t'
 zpty -r -m shell line "*-- *hover*"
+zpty -w -n shell $'\C-uattest record --profile px4-v1.16\t'
+zpty -r -m shell line '*px4-v1.16.0*'
 print completed
 zpty -d shell
 ZSH

@@ -149,18 +149,20 @@ PORT
   echo old >page.html
   "$ATTEST" record px4-v1.5.5/tpa/each_axis --rate 250 --out recorded.csv >/dev/null
   port=(--port "lib:$PORTS/port_other_profiles.so")
-  run "$ATTEST" sim hover --rate 250 "${port[@]}" --html page.html
+  hover=px4-v1.5.5/flight/hover
+  run "$ATTEST" sim $hover --rate 250 "${port[@]}" --html page.html
   [ "$status" -eq 2 ]
   has "not px4-v1.5.5; write: attest sim px4-v1.18/flight/hover --rate 250:1000 --port lib:"
   run "$ATTEST" replay recorded.csv --profile px4-v1.5.5 "${port[@]}" --html page.html
   [ "$status" -eq 2 ]
   has "not px4-v1.5.5; write: attest replay TRACE_OF_px4-v1.18.csv --port lib:"
-  run "$ATTEST" sweep-rate --rates 250 "${port[@]}" --html page.html --csv page.html.csv
+  run "$ATTEST" sweep-rate $hover --rates 250 "${port[@]}" --html page.html --csv page.html.csv
   [ "$status" -eq 2 ]
-  has "not px4-v1.5.5; write: attest sweep-rate --case px4-v1.18/flight/hover --rate 250:1000 "
+  has "not px4-v1.5.5; write: attest sweep-rate px4-v1.18/flight/hover --rate 250:1000 "
   [ ! -e page.html.csv ]
-  run "$ATTEST" stress --rates 250 --duration 0.1 "${port[@]}" --html page.html
+  run "$ATTEST" stress --case $hover --rates=250 --duration 0.1 "${port[@]}" --html page.html
   [ "$status" -eq 2 ]
+  ends "* --duration 0.1 --html page.html"
   lacks "idle machine" # it did not fly
   has "not px4-v1.5.5; write: attest stress --case px4-v1.18/flight/hover --rate 250:1000 "
   [ "$(cat page.html)" = old ]

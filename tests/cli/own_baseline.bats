@@ -179,6 +179,8 @@ P
 @test "record writes the trace of a port, which replays" {
   run "$ATTEST" record px4-v1.5.5/rates/p_alone --rate 250 --port "lib:$STARTER" --out mine.csv
   [ "$status" -eq 0 ]
+  [ "$output" = "px4-v1.5.5/rates/p_alone@250hz  48 ticks of mc_att_control -> mine.csv" ]
+  [ -z "$("$ATTEST" -q record p_alone "$STARTER" --out mine.csv)" ]
   run "$ATTEST" replay mine.csv --level exact
   [ "$status" -eq 0 ]
   "$ATTEST" record px4-v1.5.5/rates/p_alone --rate 250 | cmp - mine.csv
@@ -192,6 +194,26 @@ P
   [ "$status" -eq 2 ]
   has "the port's process"
   [ ! -e no.csv ]
+}
+
+@test "record takes a case that the port has, of the release that is asked for" {
+  run "$ATTEST" record disarmed # of the battery estimate or of the attitude unit
+  [ "$status" -eq 2 ]
+  has "\`disarmed\` matches"
+  run "$ATTEST" record disarmed "$PORTS/port_other_profiles.so" --out mine.csv
+  [ "$status" -eq 0 ]
+  has "px4-v1.18/spool_up/disarmed@250hz  200 ticks of attitude_unit"
+  rate_only mine
+  run "$ATTEST" record p_alone mine.so --profile v1.16 --out mine.csv
+  [ "$status" -eq 0 ]
+  has "px4-v1.16.0/rates/p_alone@250hz"
+  run "$ATTEST" record landed mine.so --out mine.csv
+  [ "$status" -eq 2 ]
+  has "px4-v1.18/rate_law/landed@250hz: the port has no module rate_law"
+  has "\`attest list --group landed\`"
+  run "$ATTEST" record px4-v1.5.5/rates/p_alone mine.so --profile v1.18
+  [ "$status" -eq 2 ]
+  has "no case with --profile px4-v1.18 matches"
 }
 
 @test "run --param sets a parameter for port and reference" {

@@ -352,11 +352,11 @@ not px4-v1.5.5; write: attest run --profile px4-v1.18 --port $port"
   run "$ATTEST" record p_alone "$port" --out alone.csv
   [ "$status" -eq 0 ]
   head -1 alone.csv | grep -q out/rate_ctrl_status # of the rate unit
-  run "$ATTEST" sim hover --rate 250 --port "$port"
+  run "$ATTEST" sim px4-v1.5.5/flight/hover --rate 250 --port "$port" --plant ode
   [ "$status" -eq 2 ]
-  has "write: attest sim px4-v1.18/flight/hover --rate 250:1000 --port $port"
+  has "write: attest sim px4-v1.18/flight/hover --rate 250:1000 --port $port --plant ode"
   for command in "hunt --profile v1.5.5" "time --profile v1.5.5 --rate 250" \
-    "record px4-v1.5.5/rates/p_alone --rate 250" stress; do
+    "record px4-v1.5.5/rates/p_alone --rate 250" "stress --profile v1.5.5"; do
     run "$ATTEST" $command --port "$port"
     [ "$status" -eq 2 ]
     [[ $output == "attest: error: $port supports px4-v1.18, "*", not px4-v1.5.5; write: attest "* ]]
