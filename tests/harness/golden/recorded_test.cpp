@@ -26,12 +26,13 @@ TEST(Recorded, AControllersTraceIsOfTheProfileThatItsProvenanceNames) {
   EXPECT_EQ(read->subject.profile, "px4-v1.3.4");
 }
 
-// A trace of the unit with this parameter, without provenance.
+// A trace of the unit with this parameter, if it has a name, without provenance.
 Recorded assumed(Module module, const std::string& parameter) {
   const TemporaryDirectory folder;
   Trace trace = stimulate(unit_case_of(module, "px4-v1.14.4", ""), Rate::hz(250));
   trace.present = channels_of(module);
-  trace.parameters.push_back({0, parameter, 1});
+  trace.parameters.clear();
+  if (!parameter.empty()) trace.parameters.push_back({0, parameter, 1});
   const auto file = folder.path() / "trace.csv";
   EXPECT_TRUE(write_csv(file, trace, all_columns(trace)));
   const auto read = read_recorded(file);
@@ -45,6 +46,7 @@ TEST(Recorded, WithoutProvenanceTheProfileIsTheNewestReleasedThatHasTheUnit) {
   EXPECT_EQ(attitude.subject.profile, "px4-v1.16.0");
   EXPECT_THAT(attitude.notes, testing::ElementsAre(HasSubstr("judged as px4-v1.16.0, because")));
   EXPECT_EQ(assumed(Module::rate_unit, "MC_ROLLRATE_K").subject.profile, "px4-v1.16.0");
+  EXPECT_EQ(assumed(Module::rate_unit, "").subject.profile, "px4-v1.16.0");
 }
 
 TEST(Recorded, WithoutProvenanceTheProfileHasTheParametersOfTheTrace) {
