@@ -14,6 +14,10 @@ a port does not compile.
 With `--alone PORT NUMBER FAULT`, compares a port that has only its mistake NUMBER (from 1) with the
 fault, instead: whether the vectors that fail with the fault have the same deviations. So FAULT is a
 name of the mistake if both fail in the same vectors, and else a part.
+
+With `--each STEPS`, measures instead what catches each mistake alone: the suite at the level
+numeric, the suite at exact, or a hunt of so many steps. Prints a row for each mistake that the
+suite at 250 Hz and numeric does not catch, and the shares.
 """
 
 import argparse
@@ -115,15 +119,70 @@ def compare_alone(attest: str, name: str, number: int, fault: str) -> None:
     print(f"{fault}: fails {len(expected)}, {same} of them with the same deviations")
 
 
+def fails(attest: str, *command: str) -> bool:
+    """Whether a run or hunt of a port finds a mistake."""
+    done = subprocess.run([attest, "-q", *command], capture_output=True, text=True, check=False)
+    if done.returncode not in (0, 1):
+        raise Broken(f"attest {' '.join(command)}: exit {done.returncode}:\n{done.stderr}")
+    return done.returncode == 1
+
+
+def caught_by(attest: str, library: str, profile: str, steps: str) -> str:
+    """The cheapest way that catches the mistake of a port."""
+    suite = ["run", "--port", library, "--profile", profile, "--no-diagnose", "--fail-fast"]
+    hunt = ["hunt", "--port", library, "--profile", profile, "--steps", steps]
+    ways = {
+        "numeric": [*suite, "--rate", "250"],
+        "numeric, at all rates": suite,
+        "exact": [*suite, "--level", "exact"],
+        "hunt, numeric": hunt,
+        "hunt, exact": [*hunt, "--level", "exact"],
+    }
+    return next((way for way, command in ways.items() if fails(attest, *command)), "none")
+
+
+def measure_each(attest: str, paths: list[pathlib.Path], steps: str) -> int:
+    """Prints what catches the mistakes of the ports, each alone. Returns 1 if one is not caught."""
+    counts: dict[str, int] = {}
+    for path in paths:
+        port = tomllib.loads(path.read_text())
+        for mistake in port["mistakes"]:
+            with tempfile.TemporaryDirectory() as name:
+                folder = pathlib.Path(name)
+                try:
+                    make(port | {"mistakes": [mistake]}, folder)
+                    library = f"lib:{build(folder)}"
+                except Broken as error:  # it needs the edits of another mistake
+                    way = "not alone"
+                else:
+                    way = caught_by(attest, library, port["profile"], steps)
+            counts[way] = counts.get(way, 0) + 1
+            if way != "numeric":
+                print(f"| {path.stem} | {mistake['what']} | {way} |", flush=True)
+    apart = counts.pop("not alone", 0)
+    mistakes = sum(counts.values())
+    numeric = sum(count for way, count in counts.items() if "numeric" in way)
+    print(f"\n{1 - counts.get('none', 0) / mistakes:.1%} of {mistakes} mistakes are caught, "
+          f"{numeric / mistakes:.1%} at numeric; {apart} need another mistake: {counts}")
+    return 1 if "none" in counts else 0
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("attest")
     parser.add_argument("--alone", nargs=3, metavar=("PORT", "NUMBER", "FAULT"))
+    parser.add_argument("--each", metavar="STEPS")
+    parser.add_argument("--only", nargs="+", metavar="PORT", help="with --each: only these ports")
     args = parser.parse_args()
     if args.alone:
         name, number, fault = args.alone
         compare_alone(args.attest, name, int(number), fault)
         return 0
+    if args.each:
+        paths = sorted((HERE / "several").glob("*.toml"))
+        print("| port | mistake | caught by |\n|---|---|---|")
+        return measure_each(args.attest, [p for p in paths if p.stem in (args.only or [p.stem])],
+                            args.each)
     print("| port | named | not named | named wrongly |\n|---|---|---|---|")
     scores = []
     for path in sorted((HERE / "several").glob("*.toml")):
