@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/trace/csv.hpp"
 #include "harness/trace/csv_layout.hpp"
 #include "harness/trace/csv_rows.hpp"
 #include "harness/trace/plant_columns.hpp"
@@ -207,6 +208,10 @@ Result<TimedSignals> all_signals_of_csv(const std::filesystem::path& path) {
     if (name == "timestamp") {
       columns.push_back({CellType::u64, Row::time});
       has_time = true;
+      continue;
+    }
+    if (name.starts_with(profile_prefix)) {
+      columns.push_back({CellType::ignored, 0});
       continue;
     }
     columns.push_back({CellType::f32, Row::first + sizeof(float) * signals.all.size()});

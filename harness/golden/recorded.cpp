@@ -87,12 +87,13 @@ Result<ModuleUnderTest> subject_of(const TraceParts& reader, const Trace& first,
   const auto provenance = provenance_of(file);
   if (!provenance) return tl::unexpected(provenance.error());
   ModuleUnderTest subject{profile, module_of(reader.present())};
+  if (subject.profile.empty()) subject.profile = first.profile;
   if (subject.profile.empty()) subject.profile = provenance->profile;
   if (subject.profile.empty()) {
     subject.profile = assumed_profile(first, subject.module);
     notes.push_back(
-        fmt::format("judged as {}, because no provenance.toml next to it says its "
-                    "release; --profile chooses another",
+        fmt::format("judged as {}, because neither a column such as profile/px4-v1.18 nor a "
+                    "provenance.toml next to it says its release; --profile chooses another",
                     subject.profile));
   }
   if (subject.module == Module::mixer) {

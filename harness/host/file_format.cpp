@@ -11,6 +11,7 @@
 
 #include "harness/core/suggestion.hpp"
 #include "harness/host/mat_file.hpp"
+#include "harness/port/profiles.hpp"
 #include "harness/trace/csv.hpp"
 #include "harness/trace/csv_rows.hpp"
 #include "harness/ulog/format.hpp"
@@ -40,9 +41,12 @@ Result<Table> read_csv_table(const std::filesystem::path& path, std::size_t most
   return table;
 }
 
+// The trace of a case is named by the id of the case, which begins with the profile.
 Result<void> write_csv_trace(AtomicFile file, const Trace& trace) {
   CsvColumns columns = all_columns(trace);
   columns.plant = !trace.plant.empty();
+  const std::string profile = trace.source.substr(0, trace.source.find('/'));
+  if (find_profile(profile)) columns.profile = profile;
   return write_csv(std::move(file), trace, columns);
 }
 

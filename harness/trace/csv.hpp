@@ -2,7 +2,8 @@
 // decimal form that reads back to the same bits. `nan`, `inf` and `-inf` are numbers; CRLF is
 // accepted.
 //
-// The trace of a simulated flight may have columns `plant/...` with the true state of the vehicle
+// A column `profile/px4-v1.18` says of which version of the law the trace is; its cells are 1. The
+// trace of a simulated flight may have columns `plant/...` with the true state of the vehicle
 // at each tick, for people and their plots (plant_columns.hpp). They are written, but not read, so
 // their cells may have any text.
 //
@@ -14,6 +15,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "harness/core/file.hpp"
@@ -37,15 +39,18 @@ Result<Trace> read_csv(const std::filesystem::path& path, TraceNeed need);
 // content of a pipe is kept in memory. Errors: those of read_csv(), also in next_part().
 Result<std::unique_ptr<TraceParts>> open_csv(const std::filesystem::path& path, TraceNeed need);
 
+inline constexpr std::string_view profile_prefix = "profile/";
+
 // The columns to write.
 struct CsvColumns {
   ChannelSet channels;                  // in the order of channels()
   std::vector<std::string> parameters;  // names, written after the inputs
+  std::string profile = {};             // "px4-v1.18", after the outputs; empty: no such column
   bool plant = false;                   // plant/ columns, last. REQUIRES: the trace has `plant`
 };
 
 // All channels and parameters of the trace, parameters in the order in which they are first set.
-// Without plant/ columns.
+// Without profile and plant/ columns.
 CsvColumns all_columns(const Trace& trace);
 
 // Writes the file, and commits it. Errors: the file cannot be written; a parameter that a column

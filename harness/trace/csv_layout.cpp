@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "harness/core/suggestion.hpp"
+#include "harness/trace/csv.hpp"
 #include "harness/trace/plant_columns.hpp"
 
 namespace attest {
@@ -51,6 +52,9 @@ Result<CsvLayout> layout_of(const CsvRows& rows, Module module, TraceNeed need) 
       const std::size_t offset = parameters_offset + sizeof(float) * layout.parameters.size();
       layout.columns.push_back({CellType::f32, offset});
       layout.parameters.emplace_back(*parameter);
+    } else if (name.starts_with(profile_prefix)) {
+      layout.columns.push_back(ignored_column);
+      layout.profile = name.substr(profile_prefix.size());
     } else if (name.starts_with(plant_prefix)) {
       layout.columns.push_back(ignored_column);
     } else {

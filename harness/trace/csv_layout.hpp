@@ -18,6 +18,7 @@ struct CsvLayout {
   std::vector<CsvColumn> columns;
   std::vector<std::string> parameters;
   ChannelSet present;
+  std::string profile;               // empty: no column says it
   std::vector<std::string> ignored;  // names of columns
 };
 

@@ -67,6 +67,7 @@ class CsvReader final : public TraceParts {
     }
     part.source = file_;
     part.present = present_;
+    part.profile = profile_;
     part.ignored_columns = ignored_;
     part.samples.clear();
     part.parameters.clear();
@@ -95,6 +96,7 @@ class CsvReader final : public TraceParts {
     present_ = layout->present;
     parameters_ = ParameterColumns(std::move(layout->parameters));
     ignored_ = std::move(layout->ignored);
+    profile_ = std::move(layout->profile);
     rows_->set_columns(std::move(layout->columns));
     make_row();
     return check_need(present_, need_, file_);
@@ -152,6 +154,7 @@ class CsvReader final : public TraceParts {
   ChannelSet present_;
   ParameterColumns parameters_{{}};
   std::vector<std::string> ignored_;  // names of columns
+  std::string profile_;
   std::vector<char> row_;
   std::size_t tick_ = 0;
   std::uint64_t last_timestamp_ = 0;

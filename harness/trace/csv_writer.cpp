@@ -50,7 +50,7 @@ std::vector<const Channel*> chosen(const ChannelSet& set, bool outputs) {
 }  // namespace
 
 CsvColumns all_columns(const Trace& trace) {
-  CsvColumns columns{trace.present, {}, false};
+  CsvColumns columns{trace.present, {}};
   for (const ParameterChange& change : trace.parameters) {
     const auto found = std::find(columns.parameters.begin(), columns.parameters.end(), change.name);
     if (found == columns.parameters.end()) columns.parameters.push_back(change.name);
@@ -76,6 +76,7 @@ Result<void> write_csv(AtomicFile file, const Trace& trace, const CsvColumns& co
     text.name(fmt::format("{}{}", parameter_prefix, parameter));
   }
   for (const Channel* channel : outputs) text.name(channel->name);
+  if (!columns.profile.empty()) text.name(fmt::format("{}{}", profile_prefix, columns.profile));
   if (columns.plant) {
     for (const PlantColumn& column : plant_columns()) text.name(column.name);
   }
@@ -87,6 +88,7 @@ Result<void> write_csv(AtomicFile file, const Trace& trace, const CsvColumns& co
     for (const Channel* channel : inputs) text.value_of(*channel, sample);
     for (const float value : parameters.at(tick)) text.number(value);
     for (const Channel* channel : outputs) text.value_of(*channel, sample);
+    if (!columns.profile.empty()) text.number(1.0f);
     if (columns.plant) {
       for (const PlantColumn& column : plant_columns()) {
         text.number(column.value(trace.plant[tick]));

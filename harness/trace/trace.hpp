@@ -75,6 +75,7 @@ struct Trace {
   ChannelSet present;                          // the channels that have values; the others are 0
   std::vector<PlantSample> plant;              // of a simulated flight: one per sample; else empty
   std::vector<std::string> ignored_columns{};  // columns of its file that attest does not know
+  std::string profile{};                       // that its file says; empty: none
 
   // Removes all ticks after the first `ticks`, and the parameter changes at them.
   void keep_first(std::size_t ticks) {

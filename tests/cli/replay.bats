@@ -69,12 +69,23 @@ load common
   [ "$status" -eq 1 ]
 }
 
-@test "a trace that does not say its release is judged by the newest that has its parameters" {
+@test "a trace says its release, and another file is judged by the newest that has its parameters" {
   "$ATTEST" record v1.18/reference_model/events_change_no_state builtin --out new.csv
+  "$ATTEST" record v1.16/rates/i_alone builtin --out released.csv
+  "$ATTEST" record v1.14/rates/i_alone builtin --out old.csv
+  for profile in px4-v1.18:new px4-v1.16.0:released px4-v1.14.4:old; do
+    file=${profile#*:}.csv
+    head -1 "$file" | grep -q ",profile/${profile%:*}$"
+    run "$ATTEST" replay "$file"
+    [ "$status" -eq 0 ]
+    has "$file  ${profile%:*}  "
+    lacks "judged as"
+    lacks "columns ignored"
+    sed -i -E '1s#,profile/[^,]+$##; 2,$s/,1$//' "$file"
+  done
   run "$ATTEST" replay new.csv
   [ "$status" -eq 0 ]
-  has "new.csv: judged as px4-v1.18, because no provenance.toml next to it says its release"
-  "$ATTEST" record v1.16/rates/i_alone builtin --out released.csv
+  has "new.csv: judged as px4-v1.18, because neither a column such as profile/px4-v1.18 nor"
   run "$ATTEST" replay released.csv
   [ "$status" -eq 0 ]
   has "released.csv: judged as px4-v1.16.0, because"
