@@ -51,8 +51,8 @@ std::string not_compared(const ChannelSet& outputs, const std::string& want) {
 std::string different_inputs_text(const Comparison& comparison, const CompareOptions& options) {
   return fmt::format(
       "  inputs differ from tick {} on: {}\n"
-      "  these traces do not tell whether the laws differ; record both with the same inputs and "
-      "parameters,\n"
+      "  these traces do not tell whether the laws differ; record both with the same "
+      "profile, inputs and parameters,\n"
       "  or judge a port with the inputs of one trace: attest replay {} --port PORT\n",
       comparison.inputs->tick, text_of(*comparison.inputs, options.got, options.want),
       shell_word(options.want));

@@ -72,6 +72,13 @@ Comparison with_inputs(Comparison comparison, const InputComparer& inputs) {
 }  // namespace
 
 Result<Comparison> compare(TraceParts& got, TraceParts& want, const Tolerances& tolerances) {
+  const Module module = module_of(got.present()), expected = module_of(want.present());
+  if (module != expected) {
+    Comparison incomparable;
+    incomparable.mismatch =
+        fmt::format("got is a trace of {}, want of {}", name_of(module), name_of(expected));
+    return incomparable;
+  }
   const bool is_whole = tolerances.level() == Level::events;
   const std::size_t most = is_whole ? whole_trace : 100;
   TickComparer comparer(got.present(), want.present(), tolerances);

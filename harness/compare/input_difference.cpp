@@ -38,6 +38,10 @@ InputComparer::InputComparer(const ChannelSet& one, const ChannelSet& other, Com
 }
 
 void InputComparer::add(const Trace& one, const Trace& other) {
+  const bool say_profile = !one.profile.empty() && !other.profile.empty();
+  if (tick_ == 0 && say_profile && one.profile != other.profile) {
+    first_ = {0, "the profile", one.profile, other.profile};
+  }
   PendingChanges changes_of_one(one.parameters), changes_of_other(other.parameters);
   const std::size_t common = std::min(one.samples.size(), other.samples.size());
   for (std::size_t i = 0; i < common && !first_; ++i, ++tick_) {

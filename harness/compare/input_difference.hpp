@@ -13,7 +13,9 @@ namespace attest {
 // The first input or parameter in force that differs by bits. Every NaN equals every NaN.
 struct InputDifference {
   std::size_t tick = 0;
-  std::string column;      // "in/parameter.MC_ROLL_P"; empty: one trace has ended before this tick
+  // "in/parameter.MC_ROLL_P"; "the profile", at tick 0; empty: one trace has ended before this
+  // tick.
+  std::string column;
   std::string one, other;  // the values; "not set" for a parameter
 
   friend bool operator==(const InputDifference&, const InputDifference&) = default;

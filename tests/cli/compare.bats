@@ -37,6 +37,19 @@ load common
   lacks "look first at"
 }
 
+@test "traces of another unit or profile are named, and the law is not blamed" {
+  "$ATTEST" record v1.18/rates/p_alone --out new.csv
+  "$ATTEST" record v1.14/rates/p_alone --out old.csv
+  "$ATTEST" record v1.5/rates/p_alone --out controller.csv
+  run "$ATTEST" compare new.csv controller.csv
+  [ "$status" -eq 1 ]
+  has "got is a trace of rate_unit, want of mc_att_control"
+  run "$ATTEST" compare old.csv new.csv
+  [ "$status" -eq 1 ]
+  has "the profile is px4-v1.14.4 in old.csv and px4-v1.18 in new.csv"
+  lacks "look first at"
+}
+
 @test "traces of other length or rate are not compared" {
   trace="$SOURCE"/golden/recorded/px4-v1.5.5/tracking_100hz.csv
   head -n 100 "$trace" >short.csv
