@@ -18,6 +18,7 @@
 #include "harness/cli/completion.hpp"
 #include "harness/cli/man_page.hpp"
 #include "harness/cli/outputs.hpp"
+#include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/cli/wrong_arguments.hpp"
 #include "harness/core/suite_files.hpp"
@@ -144,6 +145,21 @@ constexpr std::array every_command{
     add_schedule, add_time,    add_replay, add_record,   add_compare, add_plot,  add_faults,
     add_list,     add_vectors, add_bless,  add_new_port, add_doctor,  add_smoke, add_help};
 
+// The words of the command line, without the program. A port that stands in the place of the case
+// is behind --port: `sim mine.so hover` is `sim --port mine.so hover`.
+std::vector<std::string> words_of(const CLI::App& app, int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.size() < 2) return words;
+  const auto commands =
+      app.get_subcommands([&](const CLI::App* one) { return one->get_name() == words[0]; });
+  if (commands.empty() || !is_port(words[1])) return words;
+  for (const char* argument : {"case", "port"}) {
+    if (commands.front()->get_option_no_throw(argument) == nullptr) return words;
+  }
+  words.insert(words.begin() + 1, "--port");
+  return words;
+}
+
 // Returns the exit code if the command line is wrong, or only asks for help or the version. Empty:
 // the command must run.
 std::optional<int> parse(CLI::App& app, int argc, char** argv) {
@@ -160,8 +176,10 @@ std::optional<int> parse(CLI::App& app, int argc, char** argv) {
     const std::string wrong = unknown_command(app, word);
     if (!wrong.empty()) return report_error({wrong});
   }
+  std::vector<std::string> words = words_of(app, argc, argv);
+  std::ranges::reverse(words);  // as CLI11 takes them
   try {
-    app.parse(argc, argv);
+    app.parse(std::move(words));
   } catch (const CLI::Success& success) {
     return app.exit(success);
   } catch (const CLI::ParseError& error) {

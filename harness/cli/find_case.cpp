@@ -52,7 +52,7 @@ Result<Case> find_case(const CaseChoice& choice, const SuiteFolder& suite,
                        const std::optional<LoopRate>& rate,
                        const std::optional<ModuleSet>& open_loop_of) {
   const std::string& name = choice.name;
-  if (port_of_file(name).starts_with("lib:")) {
+  if (is_port(name)) {
     return fail(fmt::format("{} is a port, not a case; write the case before it", name));
   }
   // A folder may have the name of a case by chance, so it is not a case file.

@@ -28,6 +28,10 @@ std::string assumed_by_default_of_units() {
 
 }  // namespace
 
+bool is_port(const std::string& given) {
+  return !given.ends_with(".toml") && !kind_of(port_of_file(given)).prefix.empty();
+}
+
 void add_port_argument(Command command, HostOptions& host) {
   command.option("port", host.port, "The same as --port")
       .type("PORT")
@@ -103,7 +107,8 @@ Option add_case(Command command, CaseChoice& choice, const char* name, const cha
   command
       .option(
           "--profile", choice.profile,
-          "Version of the law; default: the newest that has the case and that the port supports")
+          "Version of the law; default: the newest of the port that has the case; of the reference "
+          "v1.5.5, or v1.18 for a pair of rates or a case that v1.5.5 lacks")
       .type("PROFILE")
       .rewritten(full_profile_name);
   return choice.name.empty() ? added : added.shows_default();

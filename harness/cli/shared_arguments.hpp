@@ -19,6 +19,10 @@ inline constexpr const char* logs = "Logs of flights";
 inline constexpr const char* execution = "Execution";
 }  // namespace option_group
 
+// Whether a word of the command line is a port, or the file of one. A case file is none, even if it
+// is executable, as all files of some file systems are.
+bool is_port(const std::string& given);
+
 enum class Selects : std::uint8_t { all_vectors, open_loop };
 // --filter and related. Without --vehicle and --plant, which select flights, for `open_loop`.
 void add_selection(Command command, SelectionOptions& options,

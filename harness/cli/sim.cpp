@@ -257,7 +257,8 @@ int sim_command(const SimOptions& options, const Globals& globals) {
     for (const DocumentTable& table : document.tables) fmt::print(to, "{}", render_text(table, {}));
   }
   if (any_shown && any_result) {
-    fmt::print(to, "{}\n", flight_conclusion(flights, document, host.port == HostOptions().port));
+    fmt::print(to, "{} ({})\n",
+               flight_conclusion(flights, document, host.port == HostOptions().port), host.port);
   }
   if (!any_result) {
     return report_error(supported_instead(options.host, {sim->the_case.profile},

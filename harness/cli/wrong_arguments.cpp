@@ -38,6 +38,7 @@ constexpr std::array elsewhere{
     Elsewhere{"run", "", "; --filter chooses cases"},
     Elsewhere{"time", "--case", "; --filter chooses cases"},
     Elsewhere{"vectors", "--case", "; --filter chooses cases"},
+    Elsewhere{"stress", "", "; --case chooses the flight"},
     Elsewhere{"plot", "--signal", "; --channels chooses signals"},
     Elsewhere{"plot", "--signals", "; --channels chooses signals"},
     Elsewhere{"plot", "--out", "; the page is --html F"},
@@ -225,8 +226,12 @@ std::string wrong_port(const CLI::App& app, const Globals& globals) {
   for (const char* takes : {"--case", "--filter"}) {
     if (command.get_option_no_throw(takes) == nullptr) continue;
     const std::string suite = words.suite.empty() ? "" : " --suite " + shell_word(words.suite);
-    return fmt::format("{} is a case, not a port; write: attest{} {} {} {}", given, suite,
-                       command.get_name(), takes, shell_word(words.name));
+    const CLI::Option* const first = command.get_option_no_throw("case");
+    const bool has_port =
+        first != nullptr && first->count() > 0 && is_port(first->results().back());
+    return fmt::format("{} is a case, not a port; write: attest{} {} {} {}{}", given, suite,
+                       command.get_name(), takes, shell_word(words.name),
+                       has_port ? " --port " + shell_word(first->results().back()) : "");
   }
   return given + " is a case, not a port";
 }

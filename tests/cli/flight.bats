@@ -138,13 +138,22 @@ CHECK
   must_fail grep -q 'first deviation' page.html
 }
 
+@test "the port may come before the case" {
+  cp "$STARTER" mine.so
+  for words in "mine.so hover" "mine.so --case hover" "hover mine.so" "--case hover mine.so"; do
+    run "$ATTEST" sim $words
+    [ "$status" -eq 0 ]
+    ends "PASS the metrics* (lib:./mine.so)"
+  done
+}
+
 @test "sim: a lost vehicle, a case that is no flight, a vehicle or plant there is not" {
   run "$ATTEST" sim hover --rate 250 --port "$flip" --out lost.csv
   [ "$status" -eq 1 ]
   [[ ${lines[-1]} == "FAIL the flight ended at "*"; the outputs deviate from "* ]]
   [ -s lost.csv ]
   run "$ATTEST" sim hover
-  [ "${lines[-1]}" = "PASS the metrics are within their bounds" ]
+  [ "${lines[-1]}" = "PASS the metrics are within their bounds (builtin)" ]
   run "$ATTEST" sim px4-v1.5.5/attitude/both_tilted --rate 250 --out x.csv
   [ "$status" -eq 2 ]
   has "has no [flight]"

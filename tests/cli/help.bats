@@ -69,9 +69,11 @@ hunt+--rate+250 a hunt varies the rate itself
 mine.so did you mean `attest run mine.so`?
 compare+mine.so+mine.so mine.so: is a library or program, not a trace; `attest run` runs a port
 record+--rate+250+--case --case needs a value
-record+mine.so+--rate+250 mine.so is a port, not a case; write the case before it
-sim+mine.so is a port, not a case; write the case before it
-sim+mine.so+--case+hover the case is given twice, with --case and as the first argument
+record+mine.so+--rate+250 attest record needs CASE
+sim+mine.so needs a case, or --timing
+sim+hover+--case+hover the case is given twice, with --case and as the first argument
+sim+--rate+250+mine.so+hover hover is a case, not a port; write: attest sim --case hover --port mine.so
+stress+mine.so+hover too many arguments: `hover`; --case chooses the flight
 run+--port+mine.so+hover the port is given twice, as an argument and with --port; --filter
 run+mine.so+hover too many arguments: `hover`; --filter chooses cases
 run+--case+hover unknown option `--case`; --filter chooses cases
