@@ -72,7 +72,7 @@ record+--rate+250+--case --case needs a value
 record+mine.so+--rate+250 attest record needs CASE
 sim+mine.so needs a case, or --timing
 sim+hover+--case+hover the case is given twice, with --case and as the first argument
-sim+--rate+250+mine.so+hover hover is a case, not a port; write: attest sim --case hover --port mine.so
+sim+--rate+250+mine.so+hover a case, not a port; write: attest sim --case hover --port mine.so
 stress+mine.so+hover too many arguments: `hover`; --case chooses the flight
 run+--port+mine.so+hover the port is given twice, as an argument and with --port; --filter
 run+mine.so+hover too many arguments: `hover`; --filter chooses cases
