@@ -15,8 +15,10 @@ With `--alone PORT NUMBER FAULT`, compares a port that has only its mistake NUMB
 fault, instead: whether the vectors that fail with the fault have the same deviations. So FAULT is a
 name of the mistake if both fail in the same vectors, and else a part.
 
-With `--each STEPS`, measures instead what catches each mistake alone: the suite at the level
-numeric, the suite at exact, or a hunt of so many steps. Prints a row for each mistake that the
+With `--each STEPS`, measures instead what catches each mistake alone, of these ports and of the
+folder `alone`: the suite at the level numeric, the suite at exact, or a hunt of so many steps. The
+mistakes of `alone` are of the kinds that a suite forgets most easily: thresholds, what is held or
+latched for long, missing estimates, rare combinations. Prints a row for each mistake that the
 suite at 250 Hz and numeric does not catch, and the shares.
 """
 
@@ -179,7 +181,7 @@ def main() -> int:
         compare_alone(args.attest, name, int(number), fault)
         return 0
     if args.each:
-        paths = sorted((HERE / "several").glob("*.toml"))
+        paths = sorted(HERE.glob("several/*.toml")) + sorted(HERE.glob("alone/*.toml"))
         print("| port | mistake | caught by |\n|---|---|---|")
         return measure_each(args.attest, [p for p in paths if p.stem in (args.only or [p.stem])],
                             args.each)
