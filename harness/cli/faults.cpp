@@ -46,10 +46,8 @@ Result<std::vector<const Fault*>> chosen(const FaultOptions& options) {
     if (auto port = open_fault(id); !port) return tl::unexpected(port.error());
     const Fault* const fault = faults::find_fault(id);
     if (fault == nullptr) {
-      return fail(
-          fmt::format("{}: the table has one fault per line; run two at once as a port: attest "
-                      "run --port fault:{}",
-                      id, id));
+      return fail(id + ": the table has one fault per line; run two at once as a port: attest " +
+                  "run --port fault:" + id);
     }
     list.push_back(fault);
   }
@@ -184,7 +182,7 @@ Result<std::vector<std::string>> chosen_profiles(const FaultOptions& options,
   return profiles;
 }
 
-// Prints which faults a log of a flight shows.
+// Prints which faults a log of a flight shows, or, if the reference differs from it, which agree.
 int faults_of_log(const FaultOptions& options, const Globals& globals,
                   std::vector<const Fault*> faults) {
   if (options.profiles.size() > 1) return report_error({"--profile: name one, for the log"});
@@ -193,9 +191,14 @@ int faults_of_log(const FaultOptions& options, const Globals& globals,
   if (!log) return report_error(log.error());
   print_notes(options.log, log->notes);
   faults = detectable(of_law_of(log->profile, std::move(faults)), {log->profile});
+  const auto reference = judge_reference(*log);
+  if (!reference) return report_error(reference.error());
+  print_notes(options.log, reference->not_judged);
   note_interrupts();
   Jobs<FaultCatch> jobs;
-  for (const Fault* fault : faults) jobs.push_back(std::make_unique<LogFaultJob>(*fault, *log));
+  for (const Fault* fault : faults) {
+    jobs.push_back(std::make_unique<LogFaultJob>(*fault, *log, !reference->agrees()));
+  }
   const auto caught = results_of(jobs, options.jobs, globals.quiet);
   if (interrupted()) return exit_interrupted;
   if (!caught) return report_error(caught.error());
@@ -203,8 +206,8 @@ int faults_of_log(const FaultOptions& options, const Globals& globals,
   for (std::size_t i = 0; i < faults.size(); ++i) {
     findings.push_back({faults[i], log->profile, (*caught)[i]});
   }
-  fmt::print("{}", render_faults_of_log(options.log, log->profile, findings));
-  return exit_ok;
+  fmt::print("{}", render_faults_of_log(options.log, log->profile, *reference, findings));
+  return reference->agrees() || reference->any_passes ? exit_ok : exit_failed;
 }
 
 // Prints the file cases/CORE: the core of each profile.
@@ -319,8 +322,7 @@ void add_faults(const CommandLine& line) {
       .excludes(level);
   command
       .option("--log", options->log,
-              "Measure instead which faults the log of a flight shows: those with which a port "
-              "does not agree with it")
+              "Measure instead with which faults a port disagrees with the log of a flight")
       .type("FLIGHT.ulg")
       .excludes(bits)
       .excludes(level);

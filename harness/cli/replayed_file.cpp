@@ -98,8 +98,7 @@ class FileReplay {
     if (!log) return tl::unexpected(log.error());
     found_.notes = log->notes;
     const LoggedUnit& first = log->units.front();
-    // A log that attest wrote has the outputs of all steps, so it is judged like a trace.
-    if (log->is_of_attest && first.has_every_step && log->too_little.empty()) {
+    if (log->is_like_trace()) {
       Trace parameters;
       parameters.parameters = first.trace.parameters;
       for (const ParameterChange& change : parameters_of(options_, *log, first)) {

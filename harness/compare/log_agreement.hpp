@@ -42,11 +42,12 @@ struct LoggedPair {
 // One topic. Its deviation at a tick is the largest of its fields. NaN agrees with NaN only.
 struct TopicAgreement {
   std::string_view topic;
-  std::string condition = {};  // which of its samples; empty: all
-  std::string not_judged;      // why it is reported but not judged; empty: it is judged
-  std::size_t left_out = 0;    // ticks whose logged output cannot be computed from the log
-  std::size_t paired = 0;      // the other ticks with an output in the log
-  std::size_t missing = 0;     // paired ticks at which the port did not publish
+  std::string condition = {};        // which of its samples; empty: all
+  std::string not_judged;            // why it is reported but not judged; empty: it is judged
+  bool is_unlike_reference = false;  // it is not judged because the reference does not agree
+  std::size_t left_out = 0;          // ticks whose logged output cannot be computed from the log
+  std::size_t paired = 0;            // the other ticks with an output in the log
+  std::size_t missing = 0;           // paired ticks at which the port did not publish
   // Ticks at which log and port have an output, and the port has NaN or infinity where the log has
   // a number. A tick that is left out counts too, if the reference is finite there. One is enough
   // for the port not to agree.

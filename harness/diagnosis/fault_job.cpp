@@ -1,16 +1,21 @@
 #include "harness/diagnosis/fault_job.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "harness/core/error_json.hpp"
 #include "harness/diagnosis/hunt.hpp"
 #include "harness/host/in_process_host.hpp"
 #include "harness/port/fault_port.hpp"
+#include "harness/trace/channels.hpp"
 #include "harness/verify/evaluate.hpp"
 
 namespace attest {
@@ -37,11 +42,72 @@ std::vector<Attempt> attempts(const std::vector<SelectedCase>& cases, std::strin
   return list;
 }
 
+// A port on a unit of a log.
+struct LoggedUnitResult {
+  std::string_view title;  // of the unit
+  VectorResult result;
+  std::optional<std::size_t> tick = {};  // the first with a deviation
+  bool is_unlike_reference = false;      // not judged, because the reference does not agree
+
+  bool passes() const { return result.verdict == Verdict::pass; }
+  bool fails() const { return fails_a_run(result.verdict); }
+
+  // One line on a unit that does not pass.
+  std::string reason() const {
+    if (!result.first) return fmt::format("{}: {}", title, result.reason);
+    return fmt::format("{}: differs from tick {} on, first in {}", title, result.first->tick,
+                       channels()[result.first->channel].name);
+  }
+};
+
+Result<LoggedUnitResult> judge_as_trace(const LoggedUnit& unit, const std::string& profile,
+                                        PortHost& host) {
+  const auto result =
+      evaluate_parts(*ticks_of(unit), {profile, unit.module}, host, Tolerances(Level::numeric));
+  if (!result) return tl::unexpected(result.error());
+  LoggedUnitResult judged{info_of(unit.module).title, *result};
+  if (result->first) judged.tick = result->first->tick;
+  return judged;
+}
+
+// As `attest replay`, but with this reference. Errors: those of evaluate_log().
+Result<std::vector<LoggedUnitResult>> judge_units(const FlightLog& log, PortHost& host,
+                                                  const OpenHost& reference) {
+  std::vector<LoggedUnitResult> results;
+  if (log.is_like_trace()) {
+    return judge_as_trace(log.units.front(), log.profile, host).map([](LoggedUnitResult one) {
+      return std::vector<LoggedUnitResult>{std::move(one)};
+    });
+  }
+  for (const LoggedUnit& unit : log.units) {
+    const auto found = evaluate_log(unit, log.profile, host, {}, {}, ticks_at_once, reference);
+    if (!found) return tl::unexpected(found.error());
+    LoggedUnitResult judged{info_of(unit.module).title, found->result};
+    for (const TopicAgreement& topic : found->topics) {
+      if (!judged.tick && topic.first_unexplained) judged.tick = topic.first_unexplained->tick;
+      const bool is_skipped = found->result.verdict == Verdict::skip;
+      judged.is_unlike_reference |= is_skipped && topic.is_unlike_reference;
+    }
+    results.push_back(std::move(judged));
+  }
+  return results;
+}
+
+// Whether a port agrees with all units that the log shows.
+Result<bool> agrees_with_log(const FlightLog& log, const OpenHost& open) {
+  return judge_units(log, *open(), open).map([](const std::vector<LoggedUnitResult>& units) {
+    return std::ranges::any_of(units, &LoggedUnitResult::passes) &&
+           std::ranges::none_of(units, &LoggedUnitResult::fails) &&
+           std::ranges::none_of(units, &LoggedUnitResult::is_unlike_reference);
+  });
+}
+
 }  // namespace
 
 std::string Codec<FaultCatch>::encode(const Result<FaultCatch>& result) {
   return attest::encode(result.map([](const FaultCatch& found) {
     nlohmann::json out = {{"verdict", name_of(found.verdict)}, {"by", found.by}};
+    out["agrees_with_log"] = found.agrees_with_log;
     if (found.tick) out["tick"] = *found.tick;
     return out;
   }));
@@ -49,8 +115,10 @@ std::string Codec<FaultCatch>::encode(const Result<FaultCatch>& result) {
 
 Result<FaultCatch> Codec<FaultCatch>::decode(const std::string& text) {
   return attest::decode(text).map([](const nlohmann::json& in) {
-    FaultCatch found{
-        *parse_verdict(in.at("verdict").get<std::string>()), in.at("by").get<std::string>(), {}};
+    FaultCatch found{*parse_verdict(in.at("verdict").get<std::string>()),
+                     in.at("by").get<std::string>(),
+                     {},
+                     in.at("agrees_with_log").get<bool>()};
     if (in.contains("tick")) found.tick = in.at("tick").get<std::size_t>();
     return found;
   });
@@ -107,20 +175,38 @@ Result<FaultCatch> FaultJob::run(std::size_t) {
   return found;
 }
 
-Result<FaultCatch> LogFaultJob::run(std::size_t) {
-  FaultCatch found;
-  for (const LoggedUnit& unit : log_.units) {
-    InProcessHost host(*open_fault(fault_.id));
-    const auto judged = evaluate_log(unit, log_.profile, host, {});
-    if (!judged) return tl::unexpected(judged.error());
-    if (!fails_a_run(judged->result.verdict)) continue;
-    found.verdict = judged->result.verdict;
-    found.by = info_of(unit.module).title;
-    for (const TopicAgreement& topic : judged->topics) {
-      if (!found.tick && topic.first_unexplained) found.tick = topic.first_unexplained->tick;
-    }
-    return found;
+Result<ReferenceOnLog> judge_reference(const FlightLog& log) {
+  const auto units = judge_units(log, *open_the_reference(), open_the_reference);
+  if (!units) return tl::unexpected(units.error());
+  ReferenceOnLog reference;
+  for (const LoggedUnitResult& unit : *units) {
+    const bool deviates = unit.fails() || unit.is_unlike_reference;
+    if (unit.passes())
+      reference.any_passes = true;
+    else
+      (deviates ? reference.deviations : reference.not_judged).push_back(unit.reason());
   }
+  if (reference.any_passes || !reference.deviations.empty()) return reference;
+  return fail_at(
+      log.units.front().trace.source,
+      fmt::format("shows no mistake of a port: {}", fmt::join(reference.not_judged, "; ")));
+}
+
+Result<FaultCatch> LogFaultJob::run(std::size_t) {
+  const auto open = [&] { return std::make_unique<InProcessHost>(*open_fault(fault_.id)); };
+  const auto judged = judge_units(log_, *open(), open_the_reference);
+  if (!judged) return tl::unexpected(judged.error());
+  FaultCatch found;
+  const auto failed = std::ranges::find_if(*judged, &LoggedUnitResult::fails);
+  if (failed != judged->end()) {
+    found.verdict = failed->result.verdict;
+    found.by = failed->title;
+    found.tick = failed->tick;
+  }
+  if (!is_explanation_) return found;
+  const auto agrees = agrees_with_log(log_, open);
+  if (!agrees) return tl::unexpected(agrees.error());
+  found.agrees_with_log = *agrees;
   return found;
 }
 

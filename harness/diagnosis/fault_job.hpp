@@ -25,6 +25,7 @@ struct FaultCatch {
   Verdict verdict = Verdict::pass;  // pass: no case caught it
   std::string by;                   // id of the vector (VectorResult::id)
   std::optional<std::size_t> tick;  // the first tick with a deviation
+  bool agrees_with_log = false;     // if LogFaultJob finds it out
 
   bool is_caught() const { return fails_a_run(verdict); }
 };
@@ -80,11 +81,28 @@ class FaultJob final : public Job<FaultCatch> {
   std::optional<Level> level_;
 };
 
+// How the reference agrees with a log. Where it does not, the log shows no mistakes of a port.
+struct ReferenceOnLog {
+  // "rate unit: ..." of each unit with which it does not agree
+  std::vector<std::string> deviations;
+  std::vector<std::string>
+      not_judged;           // "attitude unit: ..." of each unit that is shown too little
+  bool any_passes = false;  // of the units
+
+  bool agrees() const { return deviations.empty(); }
+};
+
+// Judges as `attest replay` does. Errors: the log shows too little of each unit; those of
+// evaluate_log().
+Result<ReferenceOnLog> judge_reference(const FlightLog& log);
+
 // Runs one fault on each unit of a log until a unit fails. `by` is then the title of the unit.
 class LogFaultJob final : public Job<FaultCatch> {
  public:
-  // REQUIRES: `log` outlives this.
-  LogFaultJob(const faults::Fault& fault, const FlightLog& log) : fault_(fault), log_(log) {}
+  // `is_explanation`: also find out whether the fault agrees with the log as the reference should.
+  // REQUIRES: `log` outlives this, and is read as a whole.
+  LogFaultJob(const faults::Fault& fault, const FlightLog& log, bool is_explanation)
+      : fault_(fault), log_(log), is_explanation_(is_explanation) {}
 
   std::size_t size() const override { return 1; }
   Result<FaultCatch> run(std::size_t task) override;
@@ -92,6 +110,7 @@ class LogFaultJob final : public Job<FaultCatch> {
  private:
   const faults::Fault& fault_;
   const FlightLog& log_;
+  bool is_explanation_;
 };
 
 // Hunts one fault in a profile: all its modules, which take turns, as `attest hunt --profile` does.

@@ -76,6 +76,29 @@ std::string stage_lines(const std::vector<SelfDiagnosis>& results, const std::st
              profile, count(StageLine::own), count(StageLine::later), count(StageLine::wrong));
 }
 
+// How the reference deviates from a log, and the faults that agree with it.
+std::string faults_like_log(const std::string& log, const std::string& profile,
+                            const ReferenceOnLog& reference,
+                            const std::vector<FaultFinding>& findings) {
+  std::string out = fmt::format(
+      "{}: the reference does not agree with {}, so it does not show which faults {} can have\n",
+      log, reference.any_passes ? "a unit of this log" : "this log",
+      reference.any_passes ? "this unit of a port" : "a port");
+  for (const std::string& deviation : reference.deviations) {
+    out += fmt::format("  {}\n", one_line(deviation));
+  }
+  std::string rows;
+  std::size_t count = 0;
+  for (const FaultFinding& finding : findings) {
+    if (!finding.found.agrees_with_log) continue;
+    rows += fmt::format("| `{}` | {} |\n", finding.fault->id, finding.fault->what);
+    ++count;
+  }
+  if (count > 0) out += "\n| agrees with the log | what it does |\n|---|---|\n" + rows + "\n";
+  return out + fmt::format("{}: of {} faults of {}, {} {} with the log\n", log, findings.size(),
+                           profile, count, count == 1 ? "agrees" : "agree");
+}
+
 }  // namespace
 
 bool FaultFinding::is_detectable() const { return fault->is_detectable(profile); }
@@ -223,7 +246,9 @@ std::string render_self_diagnoses(const std::vector<SelfDiagnosis>& results,
 }
 
 std::string render_faults_of_log(const std::string& log, const std::string& profile,
+                                 const ReferenceOnLog& reference,
                                  const std::vector<FaultFinding>& findings) {
+  if (!reference.any_passes) return faults_like_log(log, profile, reference, findings);
   std::string out = "| group | faults | shown |\n|---|---|---|\n";
   for (const auto& [group, of_group] : by_group(findings)) {
     const FaultSummary of = summary_of(of_group);
@@ -235,12 +260,11 @@ std::string render_faults_of_log(const std::string& log, const std::string& prof
                        finding.is_caught() ? finding.found.by : "", tick_of(finding));
   }
   const FaultSummary summary = summary_of(findings);
-  out += fmt::format(
-      "\n{}: of {} faults of {}, {} fail ({:.0f}%). A port can have the others and agree with this "
-      "log.\n",
-      log, summary.detectable, profile, summary.caught,
-      percent(summary.caught, summary.detectable));
-  return out;
+  out +=
+      fmt::format("\n{}: of {} faults of {}, {} fail ({:.0f}%).{}\n", log, summary.detectable,
+                  profile, summary.caught, percent(summary.caught, summary.detectable),
+                  reference.agrees() ? " A port can have the others and agree with this log." : "");
+  return reference.agrees() ? out : out + "\n" + faults_like_log(log, profile, reference, findings);
 }
 
 std::string render_fault_list(const std::vector<const faults::Fault*>& faults) {

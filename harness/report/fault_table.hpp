@@ -53,9 +53,10 @@ std::string render_hunted_faults(const std::vector<FaultFinding>& findings,
 std::string render_self_diagnoses(const std::vector<SelfDiagnosis>& results,
                                   const std::string& profile);
 
-// Markdown: which faults the log of a flight shows. `findings`: of the faults that are detectable
-// in its profile.
+// Markdown: which faults the log of a flight shows; if the reference does not agree with it, which
+// faults agree. `findings`: of the faults that are detectable in its profile.
 std::string render_faults_of_log(const std::string& log, const std::string& profile,
+                                 const ReferenceOnLog& reference,
                                  const std::vector<FaultFinding>& findings);
 
 // One line per fault: id, group, stage, profiles in which it is detectable, description.

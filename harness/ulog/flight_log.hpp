@@ -118,6 +118,11 @@ struct FlightLog {
   bool is_of_attest = false;  // if true, the log has all that the unit received at each step
   // Remarks for the user, one line each: for example on damage, missing fields and assumptions.
   std::vector<std::string> notes;
+
+  // Whether it can be judged like a trace: attest wrote it, with the outputs of all steps.
+  bool is_like_trace() const {
+    return is_of_attest && units.front().has_every_step && too_little.empty();
+  }
 };
 
 // Reads a ULog: of the controller, if it has samples of control_state, else of the units of v1.14

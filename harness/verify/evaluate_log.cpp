@@ -74,6 +74,15 @@ class Comparable {
     });
   }
 
+  void set_not_judged(TopicAgreement& topic) const {
+    topic.not_judged = why_not(topic);
+    if (!topic.not_judged.empty()) return;
+    topic.not_judged = why_unlike_reference(topic);
+    topic.is_unlike_reference = !topic.not_judged.empty();
+  }
+
+ private:
+  // Why the log has too little.
   std::string why_not(const TopicAgreement& topic) const {
     const bool needs_steps = has_memory(log_.module, topic);
     if (needs_steps && !log_.not_judged.empty()) return log_.not_judged;
@@ -89,17 +98,20 @@ class Comparable {
       return fmt::format("for each logged sample of it, the {} or another input is not in the log",
                          log_.step_topic);
     }
+    return "";
+  }
+
+  std::string why_unlike_reference(const TopicAgreement& topic) const {
     if (log_.has_every_step && log_.module == Module::mc_att_control) return "";
     // The topics of a rate unit are judged together, because its torque contains the integral.
     for (const TopicAgreement& one : of_reference_) {
       const bool concerns = one.topic == topic.topic || log_.module == Module::rate_unit;
-      if (concerns && one.paired > 0 && !one.agrees(limits_)) return why_unlike_reference(one);
+      if (concerns && one.paired > 0 && !one.agrees(limits_)) return how_unlike_reference(one);
     }
     return "";
   }
 
- private:
-  std::string why_unlike_reference(const TopicAgreement& topic) const {
+  std::string how_unlike_reference(const TopicAgreement& topic) const {
     const char* const unknown =
         log_.module == Module::rate_unit ? "the integral and filters" : "filters and headings";
     const std::string why =
@@ -139,13 +151,14 @@ void judge_topics(const std::vector<TopicAgreement>& topics, const LogLimits& li
 class LogJudge {
  public:
   LogJudge(const LoggedUnit& log, ModuleUnderTest subject, const LogLimits& limits,
-           const LogParameters& parameters, std::size_t most_ticks)
+           const LogParameters& parameters, std::size_t most_ticks, const OpenHost& reference)
       : log_(log),
         ticks_(ticks_of(log)),
         subject_(std::move(subject)),
         limits_(limits),
         most_ticks_(most_ticks),
-        parameters_(parameters) {}
+        parameters_(parameters),
+        open_reference_(reference) {}
 
   // Compares the port at the ticks that the log shows well enough: also those that depend on every
   // step, if the reference agrees with them. Sets the topics and the ticks, or the verdict of a
@@ -156,7 +169,7 @@ class LogJudge {
       auto of_reference = drive(port, most, found);
       if (!of_reference) return tl::unexpected(of_reference.error());
       const Comparable comparable(log_, limits_, *std::move(of_reference));
-      for (TopicAgreement& topic : found.topics) topic.not_judged = comparable.why_not(topic);
+      for (TopicAgreement& topic : found.topics) comparable.set_not_judged(topic);
       if (comparable.agrees_with_reference(memoryless)) break;
     }
     const bool judges_alone = !log_.has_every_step && !found.topics.empty() && !alone_.empty() &&
@@ -171,7 +184,7 @@ class LogJudge {
   // unknown. Returns how well the reference agrees with the log. Without topics: it cannot answer,
   // for example because it does not have the profile, or the port has a fault.
   Result<std::vector<TopicAgreement>> drive(PortHost& port, Known most, LogResult& found) {
-    const auto host = open_reference();
+    const auto host = open_reference_();
     ReplayedPort reference(*host, subject_, parameters_.as_flown);
     ReplayedPort judged(port, subject_, parameters_.of_port);
     LogAgreement of_reference(log_.trace.present, limits_), of_port(log_.trace.present, limits_);
@@ -233,6 +246,7 @@ class LogJudge {
   const LogLimits& limits_;
   std::size_t most_ticks_;
   const LogParameters& parameters_;
+  const OpenHost& open_reference_;
   bool has_reference_ = true;                               // it can answer
   std::vector<TopicAgreement> alone_, alone_of_reference_;  // ControlsWithoutMemory
 };
@@ -250,17 +264,19 @@ std::string why_no_step(const SingleSteps& steps, const std::string& not_judged)
 // The log as it is, tick by tick.
 Result<void> compare_ticks(const LoggedUnit& log, const ModuleUnderTest& subject, PortHost& host,
                            const LogLimits& limits, const LogParameters& parameters,
-                           std::size_t most_ticks, LogResult& found) {
+                           std::size_t most_ticks, const OpenHost& reference, LogResult& found) {
   found.got.source = log.trace.source;
   found.got.present = log.trace.present;
-  return LogJudge(log, subject, limits, parameters, most_ticks).compare(host, found);
+  return LogJudge(log, subject, limits, parameters, most_ticks, reference).compare(host, found);
 }
 
 }  // namespace
 
+std::unique_ptr<PortHost> open_the_reference() { return open_reference(); }
+
 Result<LogResult> evaluate_log(const LoggedUnit& log, const std::string& profile, PortHost& host,
                                const LogLimits& limits, const std::vector<ParameterChange>& given,
-                               std::size_t most_ticks) {
+                               std::size_t most_ticks, const OpenHost& reference) {
   const ModuleUnderTest subject{profile, log.module};
   const LogResult nothing{result_for(log.trace.source, profile), {}, {}, {}, {}};
   LogResult found = nothing;
@@ -273,7 +289,8 @@ Result<LogResult> evaluate_log(const LoggedUnit& log, const std::string& profile
   const bool has_single_steps = info_of(log.module).is_of_cascade();
   if (!has_single_steps || log.not_judged.empty()) {
     const LogParameters parameters(log, subject, given);
-    auto compared = compare_ticks(log, subject, host, limits, parameters, most_ticks, found);
+    auto compared =
+        compare_ticks(log, subject, host, limits, parameters, most_ticks, reference, found);
     if (!compared) return tl::unexpected(compared.error());
     judge_topics(found.topics, limits, found.result);
     if (found.result.verdict != Verdict::skip || !has_single_steps) return found;
@@ -283,7 +300,7 @@ Result<LogResult> evaluate_log(const LoggedUnit& log, const std::string& profile
   LogResult of_steps = nothing;
   const LogParameters parameters(*steps, subject, given);
   auto compared = compare_single_steps(*steps, subject, host, limits, parameters, most_ticks,
-                                       !log.ticks, of_steps);
+                                       !log.ticks, reference, of_steps);
   if (!compared) return tl::unexpected(compared.error());
   VectorResult& result = of_steps.result;
   if (result.verdict != Verdict::pass) return of_steps;  // the port has a fault

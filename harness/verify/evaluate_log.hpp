@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -12,6 +14,10 @@
 #include "harness/verify/verdict.hpp"
 
 namespace attest {
+
+// Opens the port that takes the place of the reference.
+using OpenHost = std::function<std::unique_ptr<PortHost>()>;
+std::unique_ptr<PortHost> open_the_reference();
 
 struct LogResult {
   VectorResult result;  // verdict and reason
@@ -46,11 +52,14 @@ struct LogResult {
 // have. Parameters that the unit does not have in this profile are left out. A log shows few
 // situations, so a pass is no statement of conformance.
 //
+// With another port as the reference, a pass of this port says that it agrees with the log.
+//
 // Reads the ticks once, and again if they judge nothing; `most_ticks` at once. Errors: those of
 // LoggedTicks::next_part().
 Result<LogResult> evaluate_log(const LoggedUnit& log, const std::string& profile, PortHost& host,
                                const LogLimits& limits,
                                const std::vector<ParameterChange>& given = {},
-                               std::size_t most_ticks = ticks_at_once);
+                               std::size_t most_ticks = ticks_at_once,
+                               const OpenHost& reference = open_the_reference);
 
 }  // namespace attest

@@ -110,12 +110,14 @@ void append(const Trace& part, Trace& whole) {
 class SingleStepJudge {
  public:
   SingleStepJudge(const LoggedUnit& steps, const ModuleUnderTest& subject, const LogLimits& limits,
-                  const LogParameters& parameters, std::size_t most_ticks)
+                  const LogParameters& parameters, std::size_t most_ticks,
+                  const OpenHost& reference)
       : steps_(steps),
         subject_(subject),
         limits_(limits),
         parameters_(parameters),
         most_ticks_(most_ticks),
+        open_reference_(reference),
         compared_(compared_outputs(steps, subject.profile)) {
     for (const std::size_t i : outputs_by_stage(compared_)) outputs_.push_back(&channels()[i]);
   }
@@ -123,7 +125,7 @@ class SingleStepJudge {
   // Finds out which steps are compared, with the reference alone.
   Result<void> find_steps() {
     AgeLimit ages;
-    const auto host = open_reference();
+    const auto host = open_reference_();
     ReplayedPort reference(*host, subject_, parameters_.as_flown);
     IntegralInUse integral(steps_.period_us);
     const auto read = for_each_part_of(
@@ -149,7 +151,7 @@ class SingleStepJudge {
   // Sets the traces of `found` if they are wanted, and its verdict if the port has a fault.
   Result<void> compare(PortHost& port, bool keeps_traces, LogResult& found) {
     make_kinds();
-    const auto host = open_reference();
+    const auto host = open_reference_();
     ReplayedPort reference(*host, subject_, parameters_.as_flown);
     ReplayedPort judged(port, subject_, parameters_.of_port);
     IntegralInUse integral(steps_.period_us);
@@ -184,12 +186,18 @@ class SingleStepJudge {
       auto of_port = kind.of_port.finish();
       // Torque and thrust are judged together: the thrust is a copy, and shows little.
       std::string why = remembers_setpoints(subject_.module, subject_.profile);
+      bool is_unlike_reference = false;
       for (std::size_t i = 0; i < of_port.size() && why.empty(); ++i) {
-        why = why_not(kind, of_port[i], of_reference[i]);
+        why = why_not(of_port[i]);
+        if (why.empty()) {
+          why = why_unlike_reference(kind, of_reference[i]);
+          is_unlike_reference = !why.empty();
+        }
       }
       for (TopicAgreement& topic : of_port) {
         topic.condition = kind.condition;
         topic.not_judged = why;
+        topic.is_unlike_reference = is_unlike_reference;
         all.push_back(std::move(topic));
       }
     }
@@ -244,8 +252,7 @@ class SingleStepJudge {
     });
   }
 
-  std::string why_not(const StepKind& kind, const TopicAgreement& of_port,
-                      const TopicAgreement& of_reference) const {
+  std::string why_not(const TopicAgreement& of_port) const {
     if (of_port.paired < least_steps) {
       return fmt::format("the log has all inputs of only {} steps, and at least {} are needed",
                          of_port.paired, least_steps);
@@ -254,6 +261,10 @@ class SingleStepJudge {
       return fmt::format("attest does not have {}, so it cannot tell which setpoints were in use",
                          subject_.profile);
     }
+    return "";
+  }
+
+  std::string why_unlike_reference(const StepKind& kind, const TopicAgreement& of_reference) const {
     if (of_reference.agrees(limits_)) return "";
     return fmt::format("only {:.1f}% of the reference's {} are within {:g} of the log{}",
                        100 * of_reference.part_within(), of_reference.topic, limits_.within,
@@ -288,6 +299,7 @@ class SingleStepJudge {
   const LogLimits& limits_;
   const LogParameters& parameters_;
   std::size_t most_ticks_;
+  const OpenHost& open_reference_;
   ChannelSet compared_;
   std::vector<const Channel*> outputs_;  // of these
   std::uint64_t oldest_us_ = any_age;    // setpoints that were given are younger
@@ -300,8 +312,8 @@ class SingleStepJudge {
 Result<void> compare_single_steps(const LoggedUnit& steps, const ModuleUnderTest& subject,
                                   PortHost& port, const LogLimits& limits,
                                   const LogParameters& parameters, std::size_t most_ticks,
-                                  bool keeps_traces, LogResult& found) {
-  SingleStepJudge judging(steps, subject, limits, parameters, most_ticks);
+                                  bool keeps_traces, const OpenHost& reference, LogResult& found) {
+  SingleStepJudge judging(steps, subject, limits, parameters, most_ticks, reference);
   const auto compared =
       judging.find_steps().and_then([&] { return judging.compare(port, keeps_traces, found); });
   const bool has_fault = found.result.verdict != Verdict::pass;

@@ -25,6 +25,6 @@ inline constexpr std::size_t least_steps = 20;
 Result<void> compare_single_steps(const LoggedUnit& steps, const ModuleUnderTest& subject,
                                   PortHost& port, const LogLimits& limits,
                                   const LogParameters& parameters, std::size_t most_ticks,
-                                  bool keeps_traces, LogResult& found);
+                                  bool keeps_traces, const OpenHost& reference, LogResult& found);
 
 }  // namespace attest

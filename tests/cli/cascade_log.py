@@ -1,9 +1,11 @@
 """usage: cascade_log.py OUT [--thin TOPIC=N]... [--lose TOPIC=N]... [--without TOPIC]...
                        [--profile PROFILE] [--release N.N.N] [--from S] [--rate-max HZ]
+                       [--port PORT]
 
 Writes the ULog that PX4's logger would have written of a flight with both units of v1.14 to v1.18:
 the attitude unit at 250 Hz, the rate unit at 1 kHz, in position, stabilized and acro mode. The
-outputs are those of the reference (`attest record`), for inputs that a case describes.
+outputs are those of the port (default: the reference, by `attest record`), for inputs that a case
+describes.
 Topics have the fields of PX4, in its order, and the times at which its modules publish.
 
 --thin keeps every Nth sample of a topic, --lose leaves out every Nth. --release 0: not in the log.
@@ -183,14 +185,15 @@ rate_hz = 5
 """
 
 
-def recorded(case, rate_hz, profile, folder):
+def recorded(case, rate_hz, options, folder):
     """The rows of the trace of a case."""
+    profile = options.profile
     path = folder / "suite" / "cases" / profile / "attitude" / f"flight_{rate_hz}.toml"
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(case.replace("PROFILE", profile), encoding="utf-8")
     out = folder / f"{rate_hz}.csv"
-    record = [os.environ["ATTEST"], "record", str(path), "--rate", str(rate_hz), "--out", str(out)]
-    subprocess.run(record, check=True, stdout=subprocess.DEVNULL)
+    record = [os.environ["ATTEST"], "record", str(path), options.port, "--rate", str(rate_hz)]
+    subprocess.run([*record, "--out", str(out)], check=True, stdout=subprocess.DEVNULL)
     lines = [line for line in out.read_text(encoding="utf-8").splitlines() if line[0] != "#"]
     return list(csv.DictReader(lines))
 
@@ -329,13 +332,14 @@ def main():
     parser.add_argument("--release", default="")
     parser.add_argument("--from", dest="begin", type=float, default=0)
     parser.add_argument("--rate-max", type=int, default=1000)
+    parser.add_argument("--port", default="builtin")
     options = parser.parse_args()
     options.release = options.release or options.profile.removeprefix("px4-v")
     log = {}
     with tempfile.TemporaryDirectory() as folder:
-        attitude = recorded(attitude_case(), 250, options.profile, pathlib.Path(folder))
+        attitude = recorded(attitude_case(), 250, options, pathlib.Path(folder))
         add_rows(attitude, log)
-        add_rows(recorded(rate_case(attitude), 1000, options.profile, pathlib.Path(folder)), log)
+        add_rows(recorded(rate_case(attitude), 1000, options, pathlib.Path(folder)), log)
     write(log, options)
 
 

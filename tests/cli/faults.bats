@@ -181,6 +181,50 @@ CHECK
   has "nothing.ulg"
 }
 
+@test "a log with which the reference does not agree shows the faults that agree with it" {
+  "$ATTEST" sim gust --port fault:cascade-d-reversed --rate 250:1000 --out flown.ulg
+  run "$ATTEST" faults --log flown.ulg cascade-d-reversed cascade-i-missing
+  [ "$status" -eq 1 ]
+  has "the reference does not agree with this log, so it does not show which faults a port can have"
+  has "rate unit: differs from tick 1 on, first in out/vehicle_torque_setpoint.xyz[0]"
+  has '| `cascade-d-reversed` | adds D instead of subtracting it |'
+  lacks '`cascade-i-missing`'
+  has "flown.ulg: of 2 faults of px4-v1.18, 1 agrees with the log"
+  lacks "A port can have the others"
+}
+
+@test "a log of PX4 with which the reference does not agree shows the faults that do" {
+  write() { "$PYTHON" "$SOURCE/tests/cli/cascade_log.py" "$@" --port fault:cascade-d-reversed; }
+  local thin=(--thin vehicle_angular_velocity=20 --thin vehicle_torque_setpoint=20)
+  write sparse.ulg "${thin[@]}" --thin vehicle_thrust_setpoint=20 --without vehicle_attitude
+  write whole.ulg
+  faults() { run "$ATTEST" faults --log "$1" cascade-d-reversed cascade-i-missing; }
+  agrees() {
+    has "  rate unit: only 0.0% of the reference's vehicle_torque_setpoint are within 0.0001 of the"
+    has "| agrees with the log | what it does |"
+    [ "${lines[-2]}" = '| `cascade-d-reversed` | adds D instead of subtracting it |' ]
+    ends "$1: of 2 faults of px4-v1.16.0, 1 agrees with the log"
+    lacks "A port can have the others"
+  }
+  faults sparse.ulg
+  [ "$status" -eq 1 ]
+  has "sparse.ulg: the reference does not agree with this log"
+  agrees sparse.ulg
+  # The attitude unit of the log is judged.
+  faults whole.ulg
+  [ "$status" -eq 0 ]
+  has "whole.ulg: the reference does not agree with a unit of this log"
+  agrees whole.ulg
+}
+
+@test "a log that judges no unit shows no fault" {
+  "$PYTHON" "$SOURCE/tests/cli/cascade_log.py" short.ulg --thin vehicle_attitude=100 \
+    --thin vehicle_angular_velocity=1000
+  run "$ATTEST" faults --log short.ulg cascade-d-reversed
+  [ "$status" -eq 2 ]
+  has "short.ulg: shows no mistake of a port: attitude unit: the log has all inputs of only "
+}
+
 @test "hunts are compared with the suite, as attest hunt finds the faults" {
   compare() {
     "$ATTEST" -q faults --profile v1.16.0 --hunt 1,400000 "$@" cascade-d-reversed \
