@@ -45,7 +45,13 @@ std::string hint_for_missing(const fs::path& path) {
   std::error_code failed;
   const fs::path folder = folder_of(path);
   if (!fs::is_directory(folder, failed)) {
-    return fmt::format("; there is no folder {}", folder.string());
+    const std::string first = path.begin()->string();
+    const bool is_of_suite = first == "golden" || first == "cases";
+    return fmt::format("; there is no folder {}{}", folder.string(),
+                       is_of_suite ? "; an installation has its suite packed: `attest list "
+                                     "--extract DIR` makes DIR/" +
+                                         path.string()
+                                   : "");
   }
   const std::string meant = suggestion(path.filename().string(), names_in(folder));
   if (!meant.empty() || path.is_absolute()) return meant;

@@ -258,6 +258,9 @@ wrong() {
   cp "$SOURCE/golden/recorded/px4-v1.5.5/fuzz_250hz.csv" good.csv
   wrong "god.csv: $missing; did you mean \`good.csv\`?" replay god.csv
   wrong "no/a.csv: $missing; there is no folder no" compare good.csv no/a.csv
+  local packed="an installation has its suite packed: \`attest list --extract DIR\` makes DIR"
+  wrong "golden/recorded/a.csv: $missing; there is no folder golden/recorded; $packed/golden/reco" \
+    replay golden/recorded/a.csv
   wrong "flight.ulg: $missing; the path begins in $PWD" hunt --log flight.ulg
   wrong "none.toml: $missing" sim none.toml
   wrong "folder: not a regular file but a directory; name a file" plot folder
