@@ -97,6 +97,7 @@ class FileReplay {
     const auto log = log_in(file_, options_, has_page_);
     if (!log) return tl::unexpected(log.error());
     found_.notes = log->notes;
+    if (log->is_of_attest) note_other_unit();
     const LoggedUnit& first = log->units.front();
     if (log->is_like_trace()) {
       Trace parameters;

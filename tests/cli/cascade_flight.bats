@@ -22,6 +22,13 @@ load common
   run "$ATTEST" replay --profile px4-v1.18 --level exact flown.csv flown.attitude_unit.csv
   lacks "to judge both units"
   [ "$status" -eq 0 ]
+  "$ATTEST" sim sticks --rate 100:400 --out log.ulg
+  run "$ATTEST" replay log.ulg
+  [ "$status" -eq 0 ]
+  has "the attitude unit of this flight is in log.attitude_unit.ulg; to judge both units"
+  run "$ATTEST" replay log.ulg log.attitude_unit.ulg
+  [ "$status" -eq 0 ]
+  lacks "to judge both units"
 }
 
 @test "a pair selects its vectors, and so does the rate of the rate unit" {
