@@ -81,9 +81,9 @@ Result<Parts> find_parts() {
                *data / (is_installed ? "ci" : "ci/examples")};
 }
 
-// What a build or a run leaves in the folder of a port.
+// What a build, a run or the CI job leaves in the folder of a port.
 constexpr std::string_view ignored_by_git =
-    "build/\ntarget/\n__pycache__/\n*.so\n*.o\n*.elf\n/board\n";
+    "build/\ntarget/\n__pycache__/\n*.so\n*.o\n*.elf\n/board\n/reports/\n";
 
 // Files and folders that a build leaves in a starter's folder.
 bool is_build_result(const fs::path& path) {
