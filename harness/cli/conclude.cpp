@@ -60,7 +60,7 @@ std::optional<Error> other_profiles(const RunResult& run, const Examined& examin
                            });
 }
 
-int exit_code(const RunResult& run) {
+int exit_code(const RunResult& run, const Examined& examined) {
   if (!run.errors.empty()) return exit_usage;
   const Conclusion conclusion = conclusion_of(run);
   if (conclusion == Conclusion::pass) return exit_ok;
@@ -71,7 +71,8 @@ int exit_code(const RunResult& run) {
         {"no vector passed: every selected vector was an expected failure, skipped or "
          "unsupported"});
   }
-  return report_error({"no vector was compared: every selected vector was skipped or unsupported"});
+  return report_error({"no vector was compared: every selected vector was skipped or unsupported" +
+                       (examined.suggestion ? examined.suggestion() : "")});
 }
 
 // The environment variable GITHUB_STEP_SUMMARY names the file to which a job appends its summary.
@@ -123,7 +124,7 @@ int conclude(const RunResult& run, const Examined& examined, const ReportOptions
   // process.
   const auto written = write_reports(reports, {run, diagnosis, examined.traces});
   const auto unsupported = other_profiles(run, examined);
-  const int code = unsupported ? report_error(*unsupported) : exit_code(run);
+  const int code = unsupported ? report_error(*unsupported) : exit_code(run, examined);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   if (!globals.quiet || code != exit_ok) {
     const std::string summary =

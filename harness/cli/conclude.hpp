@@ -32,6 +32,8 @@ struct Examined {
   // Called before the reports are written, with the case that the diagnosis names, or an empty
   // text. May be empty.
   std::function<void(const std::string& named)> save_traces = {};
+  // Called if no vector was compared: "; what may have been meant". May be empty.
+  std::function<std::string()> suggestion = {};
 };
 
 // `run` has all results. Prints errors on stderr, the summary on stdout, and writes the reports.

@@ -130,6 +130,16 @@ void run_all(const RunOptions& options, const Globals& globals, RunPlan& plan) {
   if (auto same = check_port(plan.host); !same) run.errors.push_back(same.error());
 }
 
+// A filter selects the cases of its name, such as rate_law/landed, also if a group has this name.
+std::string group_meant(const std::vector<std::string>& filters, const SuiteFolder& suite) {
+  for (const std::string& group : suite.groups()) {
+    const std::string name = group.substr(group.find('/') + 1);
+    if (std::ranges::find(filters, name) == filters.end()) continue;
+    return fmt::format("; `{0}` is also a group: write `--group {0}`", name);
+  }
+  return "";
+}
+
 int run_command(const RunOptions& given, const Globals& globals) {
   RunOptions options = given;
   if (options.select.last_failed) {
@@ -181,8 +191,10 @@ int run_command(const RunOptions& given, const Globals& globals) {
     traces->save(*plan, *suite, options, named);
     diversion.end();  // from here on, the port does not run
   };
-  return conclude(run, {plan->cases, plan->host, options.jobs, traces->folder(), save_traces},
-                  options.report, *std::move(reports), begin, globals);
+  const auto suggestion = [&] { return group_meant(options.select.filters, *suite); };
+  return conclude(
+      run, {plan->cases, plan->host, options.jobs, traces->folder(), save_traces, suggestion},
+      options.report, *std::move(reports), begin, globals);
 }
 
 void add_strictness(Command command, RunOptions& options) {

@@ -468,6 +468,12 @@ PATHS
   run "$ATTEST" run --filter attitude
   [ "$status" -eq 2 ]
   has '`attitude` is a group: write `--group attitude` or `attitude/*`'
+  # The case rate_law/landed, which a port of the units does not have.
+  run "$ATTEST" run --filter landed \
+    --port "lib:${STARTER%/c/*}/c_cascade/attest_starter_c_cascade.so"
+  [ "$status" -eq 2 ]
+  has 'no vector was compared: '
+  has '; `landed` is also a group: write `--group landed`'
   run "$ATTEST" sim hover
   [ "$status" -eq 0 ]
   has "px4-v1.5.5/flight/hover@250hz-iris-mujoco"
