@@ -9,6 +9,7 @@
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/host/manifest.hpp"
+#include "harness/port/lacks.hpp"
 #include "harness/verify/recorded_vectors.hpp"
 
 namespace attest::cli {
@@ -115,6 +116,10 @@ void add_vectors(const CommandLine& line) {
               "Replace a parameter of each case; `run --port recorded:DIR` then does the same")
       .type("NAME=VALUE")
       .one_each_time()
+      .check([](const std::string& text) {
+        const auto change = parse_parameter(text);
+        return change ? "" : text + ": " + change.error().message;
+      })
       .excludes(lint);
   add_selection(command, options->select, Selects::open_loop);
   add_from_log(command, *options);

@@ -54,6 +54,12 @@ load common
   run "$ATTEST" replay "$trace" --param MC_ROLL_P
   [ "$status" -eq 2 ]
   has "NAME=VALUE"
+  for command in "replay $trace" "vectors inputs"; do
+    run "$ATTEST" $command --param MC_ROLL_P 7
+    [ "$status" -eq 2 ]
+    [ "${#lines[@]}" -eq 1 ]
+    has "--param: MC_ROLL_P: write NAME=VALUE with a finite number, such as MC_ROLL_P=6.5"
+  done
   run "$ATTEST" replay "$SOURCE"/golden/recorded/px4-v1.18/opposite_250hz.attitude.csv \
     --param MPC_HOLD_DZ=0.2
   [ "$status" -eq 2 ]
