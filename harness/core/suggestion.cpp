@@ -1,6 +1,7 @@
 #include "harness/core/suggestion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 #include <fmt/format.h>
@@ -32,6 +33,18 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+// Other names for a thing, which no distance finds.
+struct Synonym {
+  std::string_view unknown, known;
+};
+constexpr std::array synonyms{Synonym{"c++", "cpp"}, Synonym{"--seconds", "--duration"}};
+
+bool are_synonyms(std::string_view unknown, std::string_view candidate) {
+  return std::ranges::any_of(synonyms, [&](const Synonym& one) {
+    return one.unknown == unknown && one.known == candidate;
+  });
+}
+
 // "px4-v1.18" of "px4-v1.18.0": a release without its last number.
 std::string_view release_of(std::string_view name) {
   const std::size_t dot = std::min(name.find('.'), name.size());
@@ -44,6 +57,9 @@ std::string suggestion(std::string_view unknown, const std::vector<std::string>&
   // A text of more than 200 bytes is not a misspelt name, but comes from a file of another kind.
   constexpr std::size_t longest_name = 200;
   if (unknown.size() > longest_name) return "";
+  for (const std::string& candidate : candidates) {
+    if (are_synonyms(unknown, candidate)) return fmt::format("; did you mean `{}`?", candidate);
+  }
   for (const std::string& candidate : candidates) {  // v1.5.5 and 1.5.5 for px4-v1.5.5
     const bool is_end = !unknown.empty() && candidate.ends_with(unknown) && candidate != unknown;
     const bool lacks_v = !unknown.empty() && candidate.ends_with("-v" + std::string(unknown));
@@ -75,6 +91,12 @@ std::string suggestion(std::string_view unknown, const std::vector<std::string>&
     if (d >= best_distance) continue;
     best = &candidate;
     best_distance = d;
+  }
+  if (best == nullptr) {  // attitude for attitude_unit
+    const auto longer = std::ranges::find_if(candidates, [&](const std::string& candidate) {
+      return !unknown.empty() && candidate.starts_with(std::string(unknown) + "_");
+    });
+    if (longer != candidates.end()) best = &*longer;
   }
   return best == nullptr ? "" : fmt::format("; did you mean `{}`?", *best);
 }

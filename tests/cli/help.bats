@@ -39,6 +39,9 @@ commands=(run hunt replay sim stress sweep sweep-rate schedule time compare plot
   run "$ATTEST" run --fitler 'rates/*'
   [ "$status" -eq 2 ]
   has 'unknown option `--fitler`; did you mean `--filter`?; attest run --help shows them'
+  run "$ATTEST" stress --seconds 3
+  [ "$status" -eq 2 ]
+  has "unknown option \`--seconds\`; did you mean \`--duration\`?"
   run "$ATTEST" sim hoover --rate 250 --out f.csv
   [ "$status" -eq 2 ]
   has 'no case matches `hoover`; did you mean `hover`?'

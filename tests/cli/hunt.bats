@@ -165,6 +165,9 @@ load common
   run "$ATTEST" hunt --module rate_unti
   [ "$status" -eq 2 ]
   has 'did you mean `rate_unit`?'
+  run "$ATTEST" hunt --module attitude
+  [ "$status" -eq 2 ]
+  has "--module attitude: no such module; did you mean \`attitude_unit\`?"
   run "$ATTEST" hunt --profile v1.13
   [ "$status" -eq 2 ]
   run "$ATTEST" hunt --level events

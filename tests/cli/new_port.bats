@@ -71,6 +71,9 @@ made() {
   has "; there are c, c_cascade, c_law, cortex_m, cpp, octave, python, "
   has ", python, python_cascade, python_law, rust, serial_board, simulink"
   [ ! -e mine ]
+  run "$ATTEST" new-port mine --lang c++
+  [ "$status" -eq 2 ]
+  has "no starter in \`c++\`; did you mean \`cpp\`?"
   mkdir mine
   echo mine >mine/file
   run "$ATTEST" new-port mine --lang c

@@ -52,6 +52,19 @@ TEST(Suggestion, NamesTheReleaseOfWhichTheLastNumberIsAnother) {
   EXPECT_EQ(suggestion("px4-v1.19.0", profiles), "; did you mean `px4-v1.16.0`?");  // its letters
 }
 
+TEST(Suggestion, NamesALongerNameOnlyIfNoneIsNear) {
+  EXPECT_EQ(suggestion("attitude", {"rate_unit", "attitude_unit"}),
+            "; did you mean `attitude_unit`?");
+  EXPECT_EQ(suggestion("rate", {"rate_limit", "rates"}), "; did you mean `rates`?");
+  EXPECT_EQ(suggestion("", {"_unit"}), "");
+}
+
+TEST(Suggestion, KnowsOtherNamesOfTheSame) {
+  EXPECT_EQ(suggestion("c++", {"c", "cpp"}), "; did you mean `cpp`?");
+  EXPECT_EQ(suggestion("--seconds", {"--seed", "--duration"}), "; did you mean `--duration`?");
+  EXPECT_EQ(suggestion("--seconds", {"--rate"}), "");
+}
+
 TEST(Suggestion, AllowsAThirdOfTheLength) {
   EXPECT_EQ(suggestion("control_state.q[0]", {"in/control_state.q[0]"}),
             "; did you mean `in/control_state.q[0]`?");
