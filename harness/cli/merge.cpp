@@ -44,6 +44,27 @@ struct Part {
 // message.
 using Property = std::pair<const char*, std::function<std::string(const RunResult&)>>;
 
+// A port without the folders of its words: "proc:python3 port.py" for "proc:python3 mine/port.py".
+// Machines may have it in other folders; its bytes have a hash.
+std::string without_folders(const std::string& port) {
+  std::string out;
+  std::size_t begin = 0;   // of the file's name in the present word
+  bool is_option = false;  // such as --gains=/a/b, which is no file with a hash
+  for (const char c : port) {
+    if (c == '/' && !is_option) {
+      out.resize(begin);
+      continue;
+    }
+    out += c;
+    if (c == ' ' || c == '"' || c == '\'' || c == ':') {
+      begin = out.size();
+      is_option = false;
+    }
+    is_option = is_option || c == '=';
+  }
+  return out;
+}
+
 // The port's declarations, except its name.
 std::string declarations_of(const RunResult& run) {
   return fmt::format(
@@ -69,7 +90,7 @@ const std::vector<Property>& properties() {
       {"version of the suite",
        [](const RunResult& run) { return run.cases_version + ", " + run.golden_version; }},
       {"reference of the suite", [](const RunResult& run) { return run.suite_reference; }},
-      {"port", [](const RunResult& run) { return run.port; }},
+      {"port", [](const RunResult& run) { return without_folders(run.port); }},
       {"hash of the port", [](const RunResult& run) { return run.port_sha256; }},
       {"list of files of the port",
        [](const RunResult& run) { return fmt::format("{}", fmt::join(run.port_files, ",")); }},
@@ -210,18 +231,24 @@ std::optional<HostOptions> host_for(const MergeOptions& options, const Globals& 
   host.stop = interrupted;
   host.barrier = globals.barrier;
   // The code of another port is not called.
-  auto files = PortFiles::read(host.port, run.port_files);
-  if (files && files->sha256() == run.port_sha256) {
+  std::string why;
+  if (auto files = PortFiles::read(host.port, run.port_files); !files) {
+    why = files.error().to_string();
+  } else if (files->sha256() != run.port_sha256) {
+    why = "its files have other bytes";
+  } else {
     host.files = std::make_shared<const PortFiles>(*std::move(files));
-    if (const auto port = describe_port(host)) {
+    const auto port = describe_port(host);
+    if (port) {
       hold_to(*port, host);
       return host;
     }
+    why = port.error().to_string();
   }
   fmt::print(stderr,
              "attest: note: no probable mistake is named, because {} is not the port of the "
-             "reports; name it with --port\n",
-             host.port);
+             "reports: {}{}\n",
+             host.port, why, options.port.empty() ? "; name the port with --port" : "");
   return std::nullopt;
 }
 

@@ -71,10 +71,27 @@ shards() {
   has "no probable mistake is named, because lib:./mine.so is not the port of the reports"
   run "$ATTEST" merge part1.json part2.json --port fault:tpa-missing
   [ "$status" -eq 1 ]
-  has "because fault:tpa-missing is not the port of the reports"
+  has "because fault:tpa-missing is not the port of the reports: its files have other bytes"
+  lacks "name the port with --port"
   run "$ATTEST" merge part1.json part2.json --port lib:./moved.so --json merged.json
   [ "$status" -eq 1 ]
   cmp all.json merged.json
+}
+
+@test "each machine may have the port in another folder" {
+  mkdir here there
+  cp "$PORTS/port_sign_flip.so" here/mine.so
+  cp here/mine.so there/mine.so
+  "$ATTEST" run here/mine.so "${selected[@]}" --shard 1/2 --json part1.json || true
+  (cd there && "$ATTEST" run mine.so "${selected[@]}" --shard 2/2 --json ../part2.json) || true
+  run "$ATTEST" merge part1.json part2.json
+  [ "$status" -eq 1 ]
+  has "it looks like"
+  cp "$PORTS/port_other_profiles.so" there/mine.so
+  (cd there && "$ATTEST" run mine.so "${selected[@]}" --shard 2/2 --json ../part2.json) || true
+  run "$ATTEST" merge part1.json part2.json
+  [ "$status" -eq 2 ]
+  has "the hash of the port is"
 }
 
 @test "reports that claim more than they can are refused" {
