@@ -47,6 +47,12 @@ Result<Case> read_case(const CaseChoice& choice) {
                                           fmt::join(parsed->profiles, ", ")));
 }
 
+bool is_group(const std::string& name, const SuiteFolder& suite) {
+  return std::ranges::any_of(suite.groups(), [&](const std::string& group) {
+    return group.substr(group.find('/') + 1) == name;
+  });
+}
+
 // `rate`: of a flight; `open_loop_of`: of a case in open loop. One of them is given.
 Result<Case> find_case(const CaseChoice& choice, const SuiteFolder& suite,
                        const std::optional<LoopRate>& rate,
@@ -61,6 +67,12 @@ Result<Case> find_case(const CaseChoice& choice, const SuiteFolder& suite,
   selection.filters = {full_case_name(name)};
   if (!choice.profile.empty()) selection.profiles = {choice.profile};
   auto found = select_cases(suite.case_folders(), selection);
+  if (!found && is_group(name, suite)) {
+    return fail(
+        fmt::format("`{0}` is a group of cases; name one of them: `attest list --group {0}` "
+                    "shows them",
+                    name));
+  }
   if (!found) return tl::unexpected(found.error());
   keep_kind(open_loop_of, *found);
   if (rate) keep_law(*rate, *found);

@@ -77,6 +77,7 @@ sim+mine.so needs a case, or --timing
 sim+hover+--case+hover the case is given twice, with --case and as the first argument
 sim+--rate+250+mine.so+hover a case, not a port; write: attest sim --case hover --port mine.so
 stress+mine.so+hover too many arguments: `hover`; --case chooses the flight
+sim+saturation `saturation` is a group of cases; name one of them: `attest list --group saturation`
 run+--port+mine.so+hover the port is given twice, as an argument and with --port; --filter
 run+mine.so+hover too many arguments: `hover`; --filter chooses cases
 run+--case+hover unknown option `--case`; --filter chooses cases
