@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <set>
@@ -181,20 +182,34 @@ class Replay {
   std::string page_;
 };
 
-// `run` takes a port without --port, so it may be given here, too. Then the built-in port would be
-// judged in its place.
-Result<void> refuse_ports(const std::vector<std::string>& files) {
-  for (const std::string& file : files) {
-    const std::string port = port_of_file(file);
-    if (kind_of(file).prefix.empty() && !port.starts_with("lib:")) continue;
-    return fail(
-        fmt::format("{} is a port, not a trace or log; give it with --port {}", file, port));
+// Not a file of data that is executable, as all files of some file systems are.
+bool is_port_here(const std::string& word) {
+  if (!port_of_file(word).starts_with("proc:") || !kind_of(word).prefix.empty()) {
+    return is_port(word);
   }
-  return {};
+  std::string begin(2, '\0');
+  std::ifstream(word).read(begin.data(), 2);
+  return begin == "#!" || begin ==
+                              "\x7f"
+                              "E";
 }
 
-int replay_command(const ReplayOptions& options, const Globals& globals) {
-  if (auto no_port = refuse_ports(options.files); !no_port) return report_error(no_port.error());
+// Other commands take a port without --port, so it may stand among the files here, too.
+Result<ReplayOptions> with_port_of_files(ReplayOptions options) {
+  const auto port = std::ranges::find_if(options.files, is_port_here);
+  if (port == options.files.end()) return options;
+  if (options.host.port != HostOptions().port || options.files.size() == 1) {
+    return fail(fmt::format("{} is a port, not a trace or log; give one port, and a file", *port));
+  }
+  options.host.port = port_of_file(*port);
+  options.files.erase(port);
+  return with_port_of_files(std::move(options));
+}
+
+int replay_command(const ReplayOptions& given, const Globals& globals) {
+  auto sorted = with_port_of_files(given);
+  if (!sorted) return report_error(sorted.error());
+  ReplayOptions& options = *sorted;
   // The outputs in these files are what the port must compute.
   auto& hidden = globals.barrier->hidden;
   hidden.insert(hidden.end(), options.files.begin(), options.files.end());
@@ -202,16 +217,15 @@ int replay_command(const ReplayOptions& options, const Globals& globals) {
   if (!level) return report_error(level.error());
   if (auto checked = check_reports(options, globals); !checked)
     return report_error(checked.error());
-  ReplayOptions held = options;
-  const auto port = prepare_port(held.host);
+  const auto port = prepare_port(options.host);
   if (!port) return report_error(port.error());
   std::string arithmetic;
   if (port->fraction_bits && *level == Level::numeric) {
     arithmetic = fmt::format(" for fixed point with {} fraction bits", *port->fraction_bits);
   }
   // With one file, this process does the work itself, and an interrupt may end it at once.
-  if (held.files.size() > 1) note_interrupts();
-  return Replay(held, globals, *level, std::move(arithmetic)).run();
+  if (options.files.size() > 1) note_interrupts();
+  return Replay(options, globals, *level, std::move(arithmetic)).run();
 }
 
 void add_log_options(Command command, ReplayOptions& options) {

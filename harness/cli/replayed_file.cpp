@@ -99,6 +99,7 @@ class FileReplay {
     found_.notes = log->notes;
     if (log->is_of_attest) note_other_unit();
     const LoggedUnit& first = log->units.front();
+    found_.is_log = true;
     if (log->is_like_trace()) {
       Trace parameters;
       parameters.parameters = first.trace.parameters;
@@ -109,7 +110,6 @@ class FileReplay {
       ticks->set_parameters(std::move(parameters.parameters));
       return judge_trace(*ticks, {log->profile, first.module});
     }
-    found_.is_log = true;
     std::vector<LogResult> results;
     for (const LoggedUnit& unit : log->units) {
       if (auto judged = judge_unit(*log, unit, results); !judged) return judged;

@@ -154,13 +154,27 @@ load common
   has '`one`'
 }
 
-@test "a port in the place of a trace is an error, and the built-in port is not judged" {
-  for port in "$STARTER" "lib:$STARTER"; do
-    run "$ATTEST" replay "$SOURCE"/golden/px4-v1.5.5/attitude/yaw_error.csv "$port"
-    [ "$status" -eq 2 ]
-    has "$port is a port, not a trace or log; give it with --port lib:$STARTER"
-    lacks PASS
+@test "a port may stand among the traces, and then it is judged" {
+  trace=$SOURCE/golden/recorded/px4-v1.5.5/fuzz_250hz.csv
+  cp "$STARTER" mine.so
+  for port in mine.so "lib:./mine.so"; do
+    run "$ATTEST" replay "$trace" "$port"
+    [ "$status" -eq 0 ]
+    has "PASS 1 of 1 traces conform (lib:./mine.so, numeric)"
   done
+  run "$ATTEST" replay "$trace" mine.so lib:./mine.so
+  [ "$status" -eq 2 ]
+  has "is a port, not a trace or log; give one port, and a file"
+  run "$ATTEST" replay mine.so
+  [ "$status" -eq 2 ]
+  has "mine.so is a port, not a trace or log"
+  lacks PASS
+  printf '#!/bin/sh\nexit 3\n' >port.sh
+  cp "$trace" executable.csv
+  chmod +x port.sh executable.csv
+  run "$ATTEST" replay executable.csv port.sh
+  [ "$status" -eq 2 ]
+  has "proc:./port.sh: it exited with status 3"
 }
 
 @test "a missing trace is an error" {
@@ -221,7 +235,8 @@ flight_log() {
   run "$ATTEST" replay "$log" --level exact
   [ "$status" -eq 0 ]
   has "px4-v1.3.4"
-  has "PASS 1 of 1 traces conform"
+  has "a pass by a log proves little"
+  has "PASS 1 of 1 traces and logs agree"
   "$ATTEST" sim gust --rate 250 --out "$log"
   run "$ATTEST" replay "$log" --port fault:quat-order-xyzw
   [ "$status" -eq 1 ]

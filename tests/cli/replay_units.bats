@@ -34,7 +34,7 @@ $2 rate unit" ] || {
     "$ATTEST" record "px4-v1.16.0/${vector%@*}" --rate "${vector#*@}" --out unit.ulg
     run "$ATTEST" replay unit.ulg --level exact
     [ "$status" -eq 0 ]
-    has "PASS 1 of 1 traces conform"
+    has "PASS 1 of 1 traces and logs agree"
   done
   "$ATTEST" record px4-v1.14.4/sticks/tilt_filter --rate 250 --out unit.ulg
   run "$ATTEST" replay unit.ulg --level exact
