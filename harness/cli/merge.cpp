@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -21,6 +22,7 @@
 #include "harness/cli/suite_folder.hpp"
 #include "harness/core/interrupt.hpp"
 #include "harness/core/version.hpp"
+#include "harness/port/port.hpp"
 #include "harness/report/read_report.hpp"
 #include "harness/sweep/identity.hpp"
 
@@ -44,23 +46,26 @@ struct Part {
 // message.
 using Property = std::pair<const char*, std::function<std::string(const RunResult&)>>;
 
-// A port without the folders of its words: "proc:python3 port.py" for "proc:python3 mine/port.py".
-// Machines may have it in other folders; its bytes have a hash.
+// "port.py" of "mine/port.py". The folder of an argument such as --gains=/a/b or runs/a stays: it
+// need not be a file, whose bytes are in the hash of the port.
+std::string_view without_folder(std::string_view word, bool is_first) {
+  const std::string_view name = word.substr(word.find_last_of('/') + 1);
+  const bool is_file = is_first || name.find('.') != std::string_view::npos;
+  return is_file && word.find('=') == std::string_view::npos ? name : word;
+}
+
+// A port as each machine may have it in a folder of its own: "proc:python3 port.py" of
+// "proc:python3 mine/port.py".
 std::string without_folders(const std::string& port) {
-  std::string out;
-  std::size_t begin = 0;   // of the file's name in the present word
-  bool is_option = false;  // such as --gains=/a/b, which is no file with a hash
-  for (const char c : port) {
-    if (c == '/' && !is_option) {
-      out.resize(begin);
-      continue;
-    }
-    out += c;
-    if (c == ' ' || c == '"' || c == '\'' || c == ':') {
-      begin = out.size();
-      is_option = false;
-    }
-    is_option = is_option || c == '=';
+  const std::string prefix(kind_of(port).prefix);
+  std::string out = prefix;
+  bool is_first = true;
+  for (std::size_t begin = prefix.size(); begin < port.size();) {
+    const std::size_t end = std::min(port.find_first_of(" \"'", begin), port.size());
+    out += without_folder(std::string_view(port).substr(begin, end - begin), is_first);
+    is_first = is_first && end == begin;
+    if (end < port.size()) out += port[end];
+    begin = end + 1;
   }
   return out;
 }

@@ -94,6 +94,25 @@ shards() {
   has "the hash of the port is"
 }
 
+@test "a port that gets other arguments is another port" {
+  cp "$PORTS/port_sign_flip.so" mine.so
+  shards lib:./mine.so 2
+  while read -r expected one other; do
+    sed "s#lib:./mine.so#proc:./x/port $one#" part1.json >p1.json
+    sed "s#lib:./mine.so#proc:./port $other#" part2.json >p2.json
+    run "$ATTEST" merge p1.json p2.json
+    [ "$status" -eq "$expected" ]
+    case $status in
+      2) has "the port is \`proc:port $other\`, but in p1.json it is \`proc:port $one\`" ;;
+      1) has "FAIL" ;;
+    esac
+  done <<'PORTS'
+2 runs/a runs/b
+2 --gains=a/x.csv --gains=b/x.csv
+1 a/x.csv b/x.csv
+PORTS
+}
+
 @test "reports that claim more than they can are refused" {
   shards builtin 2
   sed 's/"released": true/"released": false/' part1.json >p1.json
