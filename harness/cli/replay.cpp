@@ -251,10 +251,9 @@ void add_log_options(Command command, ReplayOptions& options) {
 void add_law_options(Command command, ReplayOptions& options) {
   command
       .option("--profile", options.profile,
-              "Version of the law; default for a trace: that of its provenance.toml, else "
-              "the newest released one with its unit and parameters; default for a log: the "
-              "release of PX4 that "
-              "wrote it")
+              "Version of the law; default for a trace: that of its column profile/..., or else of "
+              "its provenance.toml, or else the newest released one with its unit and parameters; "
+              "default for a log: the release of PX4 that wrote it")
       .type("PROFILE")
       .rewritten(full_profile_name);
   command

@@ -213,7 +213,7 @@ load common
   done
   run "$ATTEST" replay a.csv a.ulg a.ulog log.csv
   [ "$status" -eq 0 ]
-  has "PASS 4 of 4 traces conform"
+  has "PASS 4 of 4 traces and logs agree"
   [ "$(head -c 6 a.mat)" = MATLAB ]
   cp a.mat table.csv
   for command in plot replay "compare a.csv"; do
