@@ -57,6 +57,8 @@ std::string suggestion(std::string_view unknown, const std::vector<std::string>&
   // A text of more than 200 bytes is not a misspelt name, but comes from a file of another kind.
   constexpr std::size_t longest_name = 200;
   if (unknown.size() > longest_name) return "";
+  // It is known, but not with the options that were given.
+  if (std::ranges::find(candidates, unknown) != candidates.end()) return "";
   for (const std::string& candidate : candidates) {
     if (are_synonyms(unknown, candidate)) return fmt::format("; did you mean `{}`?", candidate);
   }

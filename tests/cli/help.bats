@@ -45,6 +45,9 @@ commands=(run hunt replay sim stress sweep sweep-rate schedule time compare plot
   run "$ATTEST" sim hoover --rate 250 --out f.csv
   [ "$status" -eq 2 ]
   has 'no case matches `hoover`; did you mean `hover`?'
+  run "$ATTEST" record sticks/yaw_stick_curve --profile v1.14.4
+  [ "$status" -eq 2 ]
+  has 'no case with --profile px4-v1.14.4 matches `sticks/yaw_stick_curve`; `attest list` shows'
   run "$ATTEST" run --group attitude --filter 'rates/*'
   [ "$status" -eq 2 ]
   has 'no case with --group attitude matches `rates/*`'
