@@ -12,6 +12,7 @@
 #include "harness/compare/compare.hpp"
 #include "harness/compare/gross.hpp"
 #include "harness/core/error_json.hpp"
+#include "harness/diagnosis/remarks.hpp"
 #include "harness/golden/reference.hpp"
 #include "harness/loop/open_loop.hpp"
 #include "harness/verify/evaluate.hpp"
@@ -245,8 +246,7 @@ std::vector<DiagnosisVector> diagnosis_vectors(const std::vector<SelectedCase>& 
                                                const std::vector<VectorResult>& results) {
   // With state that outlives an instance, the later instances of a case deviate by that state. A
   // fault can have such values by chance.
-  const bool shares_state =
-      std::ranges::any_of(results, [](const VectorResult& one) { return !one.after.empty(); });
+  const bool shares_state = std::ranges::any_of(results, passes_alone);
   const auto failed = [shares_state](const VectorResult& result) {
     const bool is_of_state = shares_state && result.group == "instances";
     return result.first && fails_a_run(result.verdict) && !is_of_state;

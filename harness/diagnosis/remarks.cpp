@@ -20,12 +20,11 @@ bool failed(const VectorResult& result) { return fails_a_run(result.verdict); }
 void add_shared_state(const std::vector<VectorResult>& results, std::vector<std::string>& remarks) {
   std::size_t failing = 0, of_instances = 0, after_others = 0, others_passing = 0;
   for (const VectorResult& result : results) {
-    const bool passes_alone = result.verdict == Verdict::pass && !is_of_instances(result);
-    others_passing += passes_alone ? 1 : 0;
+    others_passing += result.verdict == Verdict::pass && !is_of_instances(result) ? 1 : 0;
     if (!failed(result)) continue;
     ++failing;
     of_instances += is_of_instances(result) ? 1 : 0;
-    after_others += result.after.empty() ? 0 : 1;
+    after_others += passes_alone(result) ? 1 : 0;
   }
   if (after_others > 0) {
     remarks.push_back(
@@ -67,6 +66,19 @@ void add_fixed_step(const std::vector<VectorResult>& results, std::vector<std::s
   }
 }
 
+// With -ffast-math a compiler takes isfinite() for true. The cases with NaN then give NaN.
+void add_missing_checks(const std::vector<VectorResult>& results,
+                        std::vector<std::string>& remarks) {
+  constexpr std::ptrdiff_t least = 10;  // fewer can be a single check that the port forgot
+  const auto failing = std::ranges::count_if(results, failed);
+  const auto non_finite = std::ranges::count(results, Verdict::non_finite, &VectorResult::verdict);
+  if (non_finite < least || 2 * non_finite < failing) return;
+  remarks.push_back(fmt::format(
+      "{} of {} failing vectors give NaN or infinity where the law gives a number: is the port "
+      "built with -ffast-math or -Ofast, which remove checks such as isfinite()?",
+      non_finite, failing));
+}
+
 void add_flights_only(const std::vector<VectorResult>& results, std::vector<std::string>& remarks) {
   const auto is_open_loop = [](const VectorResult& one) { return !one.plant_configuration; };
   const bool flights_fail = std::any_of(results.begin(), results.end(), [&](const auto& one) {
@@ -88,10 +100,15 @@ void add_flights_only(const std::vector<VectorResult>& results, std::vector<std:
 
 }  // namespace
 
+bool passes_alone(const VectorResult& failed) {
+  return !failed.after.empty() && failed.verdict != Verdict::timeout;
+}
+
 std::vector<std::string> remarks_on(const std::vector<VectorResult>& results) {
   std::vector<std::string> remarks;
   add_shared_state(results, remarks);
   add_fixed_step(results, remarks);
+  add_missing_checks(results, remarks);
   add_flights_only(results, remarks);
   return remarks;
 }

@@ -39,6 +39,21 @@ TEST(Remarks, OnlyCasesOfInstancesFail) {
   EXPECT_THAT(remarks_on(results), ElementsAre(HasSubstr("1 of the failing vectors pass")));
 }
 
+TEST(Remarks, ATimeoutAfterOthersDoesNotShowSharedState) {
+  std::vector<VectorResult> results{result("rates", "p", 250, Verdict::timeout)};
+  results[0].after = {"px4-v1.5.5/rates/d@250hz"};
+  EXPECT_THAT(remarks_on(results), IsEmpty());
+}
+
+TEST(Remarks, ManyNonFiniteOutputsMayComeFromTheCompiler) {
+  std::vector<VectorResult> results(9, result("robustness", "nan", 250, Verdict::non_finite));
+  EXPECT_THAT(remarks_on(results), IsEmpty());
+  results.push_back(results.front());
+  EXPECT_THAT(remarks_on(results), ElementsAre(HasSubstr("10 of 10 failing vectors give NaN")));
+  results.insert(results.end(), 11, result("rates", "p", 250, Verdict::fail));
+  EXPECT_THAT(remarks_on(results), IsEmpty());
+}
+
 TEST(Remarks, CasesPassAtOneRateOnly) {
   std::vector<VectorResult> results;
   for (const char* const name : {"p", "i", "d"}) {
