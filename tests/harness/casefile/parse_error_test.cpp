@@ -37,7 +37,7 @@ TEST(CaseErrors, ListsOfProfiles) {
   EXPECT_EQ(errors_with("profiles = [\"px4-v1.3.4\"]"),
             "2:1: leaves out `px4-v1.5.5`, the profile of the folder");
   EXPECT_EQ(errors_with("profiles = [\"px4-v1.5.5\", \"px4-v1.3.5\"]"),
-            "2:1: `px4-v1.3.5` is no profile; did you mean `px4-v1.5.5`?");
+            "2:1: `px4-v1.3.5` is no profile; did you mean `px4-v1.3.4`?");
   EXPECT_EQ(errors_with("profiles = [\"px4-v1.16.0\", \"px4-v1.5.5\"]"),
             "2:1: `px4-v1.16.0` is a profile of another law than the folder");
   EXPECT_EQ(errors_with("profiles = []"), "2:1: names no profile");
