@@ -162,7 +162,7 @@ class FileReplay {
   // `step`: "tick" or "single step". `judged_by`: the level, or "log".
   void print_result(const VectorResult& result, const std::string& title, std::string_view step,
                     std::string_view judged_by) {
-    print("{:<12}{}  {}", name_of(result.verdict), title, result.profile);
+    print("{:<12}{}  {}", name_of(result.verdict), title, one_line(result.profile));
     if (result.ticks > 0) print("  {}, {}", counted(result.ticks, step), judged_by);
     if (result.verdict == Verdict::pass && result.tightest) {
       print(", tightest headroom {:.3g}x on {}", result.tightest->ratio,

@@ -11,8 +11,11 @@
 #include "controller/actuation/battery_status.hpp"
 #include "controller/actuation/mixer.hpp"
 #include "harness/casefile/parse.hpp"
+#include "harness/core/suggestion.hpp"
 #include "harness/host/file_format.hpp"
 #include "harness/port/profiles.hpp"
+#include "harness/trace/csv.hpp"
+#include "harness/trace/csv_cells.hpp"
 #include "harness/trace/provenance.hpp"
 
 namespace attest {
@@ -87,6 +90,13 @@ Result<ModuleUnderTest> subject_of(const TraceParts& reader, const Trace& first,
   const auto provenance = provenance_of(file);
   if (!provenance) return tl::unexpected(provenance.error());
   ModuleUnderTest subject{profile, module_of(reader.present())};
+  if (subject.profile.empty() && !first.profile.empty() && !find_profile(first.profile)) {
+    return fail_at(reader.file(),
+                   fmt::format("column {}: no such profile{}; --profile chooses one",
+                               in_backquotes(std::string(profile_prefix) + first.profile),
+                               suggestion(first.profile, known_profile_names())),
+                   1);
+  }
   if (subject.profile.empty()) subject.profile = first.profile;
   if (subject.profile.empty()) subject.profile = provenance->profile;
   if (subject.profile.empty()) {

@@ -53,6 +53,10 @@ Result<CsvLayout> layout_of(const CsvRows& rows, Module module, TraceNeed need) 
       layout.columns.push_back({CellType::f32, offset});
       layout.parameters.emplace_back(*parameter);
     } else if (name.starts_with(profile_prefix)) {
+      if (!layout.profile.empty()) {
+        return rows.fail_at_name(
+            i, fmt::format("another column says {}; keep the right one", layout.profile));
+      }
       layout.columns.push_back(ignored_column);
       layout.profile = name.substr(profile_prefix.size());
     } else if (name.starts_with(plant_prefix)) {

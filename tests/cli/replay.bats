@@ -89,6 +89,17 @@ load common
     lacks "columns ignored"
     sed -i -E '1s#,profile/[^,]+$##; 2,$s/,1$//' "$file"
   done
+  sed '1s#$#,profile/px4-v1.18#; 2,$s#$#,1#' released.csv >said.csv
+  sed '1s#px4-v1.18$#px4-v1.19#' said.csv >unknown.csv
+  run "$ATTEST" replay unknown.csv
+  [ "$status" -eq 2 ]
+  has 'unknown.csv:1: column `profile/px4-v1.19`: no such profile; did you mean `px4-v1.18`?'
+  run "$ATTEST" replay unknown.csv --profile v1.16
+  [ "$status" -eq 0 ]
+  sed '1s#$#,profile/px4-v1.16.0#; 2,$s#$#,1#' said.csv >both.csv
+  run "$ATTEST" replay both.csv
+  [ "$status" -eq 2 ]
+  has "another column says px4-v1.18; keep the right one"
   run "$ATTEST" replay new.csv
   [ "$status" -eq 0 ]
   has "new.csv: judged as px4-v1.18, because neither a column such as profile/px4-v1.18 nor"
