@@ -147,7 +147,7 @@ constexpr std::array every_command{
 
 // The words of the command line, without the program. A port that stands in the place of the case
 // is behind --port: `sim mine.so hover` is `sim --port mine.so hover`.
-std::vector<std::string> words_of(const CLI::App& app, int argc, char** argv) {
+std::vector<std::string> words_in_order(const CLI::App& app, int argc, char** argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
   if (words.size() < 2) return words;
   const auto commands =
@@ -176,7 +176,7 @@ std::optional<int> parse(CLI::App& app, int argc, char** argv) {
     const std::string wrong = unknown_command(app, word);
     if (!wrong.empty()) return report_error({wrong});
   }
-  std::vector<std::string> words = words_of(app, argc, argv);
+  std::vector<std::string> words = words_in_order(app, argc, argv);
   std::ranges::reverse(words);  // as CLI11 takes them
   try {
     app.parse(std::move(words));

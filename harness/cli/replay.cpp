@@ -20,7 +20,6 @@
 #include "harness/core/file.hpp"
 #include "harness/core/interrupt.hpp"
 #include "harness/core/json_text.hpp"
-#include "harness/port/lacks.hpp"
 #include "harness/port/port.hpp"
 #include "harness/port/profiles.hpp"
 #include "harness/report/fleet_document.hpp"
@@ -256,14 +255,7 @@ void add_law_options(Command command, ReplayOptions& options) {
               "default for a log: the release of PX4 that wrote it")
       .type("PROFILE")
       .rewritten(full_profile_name);
-  command
-      .option("--param", options.parameters, "Set a parameter of the port from the first step on")
-      .type("NAME=VALUE")
-      .one_each_time()
-      .check([](const std::string& text) {
-        const auto change = parse_parameter(text);
-        return change ? "" : text + ": " + change.error().message;
-      });
+  add_parameters(command, options.parameters, "Set a parameter of the port from the first step on");
   command
       .option("--level", options.level, "How outputs are compared: `exact`, `numeric` or `events`")
       .type("LEVEL")

@@ -206,12 +206,9 @@ void add_strictness(Command command, RunOptions& options) {
       .type("LEVEL")
       .shows_default()
       .group(option_group::strictness);
-  command
-      .option("--param", options.parameters,
-              "Set a parameter of port and reference in each open-loop case; flights are not "
-              "run")
-      .type("NAME=VALUE")
-      .one_each_time()
+  add_parameters(
+      command, options.parameters,
+      "Set a parameter of port and reference in each open-loop case; flights are not run")
       .group(option_group::strictness);
   command
       .option("--expected-failures", options.expected_failures,

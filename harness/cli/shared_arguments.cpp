@@ -114,6 +114,16 @@ Option add_case(Command command, CaseChoice& choice, const char* name, const cha
   return choice.name.empty() ? added : added.shows_default();
 }
 
+Option add_parameters(Command command, std::vector<std::string>& parameters, const char* what) {
+  return command.option("--param", parameters, what)
+      .type("NAME=VALUE")
+      .one_each_time()
+      .check([](const std::string& text) {
+        const auto change = parse_parameter(text);
+        return change ? "" : text + ": " + change.error().message;
+      });
+}
+
 void add_plant(Command command, std::string& vehicle, std::string& plant, const char* usual_vehicle,
                const char* usual_plant) {
   command

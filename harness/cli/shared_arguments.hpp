@@ -46,6 +46,8 @@ std::string full_case_name(const std::string& given);
 // Errors: one of the names is not that of a profile.
 Result<void> check_profiles(const std::vector<std::string>& names);
 
+// --param NAME=VALUE, several times. `what` describes the option.
+Option add_parameters(Command command, std::vector<std::string>& parameters, const char* what);
 // --assume: assumptions that replace the topics that a flight log lacks.
 void add_assumed(Command command, std::vector<std::string>& assumed);
 void add_timeout(Command command, double& timeout_s);

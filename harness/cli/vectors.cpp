@@ -9,7 +9,6 @@
 #include "harness/cli/shared_arguments.hpp"
 #include "harness/cli/suite_folder.hpp"
 #include "harness/host/manifest.hpp"
-#include "harness/port/lacks.hpp"
 #include "harness/verify/recorded_vectors.hpp"
 
 namespace attest::cli {
@@ -111,15 +110,8 @@ void add_vectors(const CommandLine& line) {
               "are changed to begin at one period; default: all vectors, unchanged")
       .type("HZ")
       .excludes(lint);
-  command
-      .option("--param", options->parameters,
-              "Replace a parameter of each case; `run --port recorded:DIR` then does the same")
-      .type("NAME=VALUE")
-      .one_each_time()
-      .check([](const std::string& text) {
-        const auto change = parse_parameter(text);
-        return change ? "" : text + ": " + change.error().message;
-      })
+  add_parameters(command, options->parameters,
+                 "Replace a parameter of each case; `run --port recorded:DIR` then does the same")
       .excludes(lint);
   add_selection(command, options->select, Selects::open_loop);
   add_from_log(command, *options);

@@ -190,7 +190,7 @@ struct CaseWords {
   std::string suite;  // of --suite; empty: it is not needed
 };
 
-CaseWords words_of(const std::string& given, const Globals& globals) {
+CaseWords case_meant(const std::string& given, const Globals& globals) {
   const auto suite = find_suite(globals.suite);
   const fs::path file = given;
   if (given.ends_with(".toml") && is_suite_file(file)) {
@@ -221,7 +221,7 @@ std::string wrong_port(const CLI::App& app, const Globals& globals) {
         file);
   }
   if (!kind_of(given).prefix.empty()) return "";
-  const CaseWords words = words_of(given, globals);
+  const CaseWords words = case_meant(given, globals);
   if (words.name.empty()) return "";
   for (const char* takes : {"--case", "--filter"}) {
     if (command.get_option_no_throw(takes) == nullptr) continue;
