@@ -83,10 +83,9 @@ class FaultJob final : public Job<FaultCatch> {
 
 // How the reference agrees with a log. Where it does not, the log shows no mistakes of a port.
 struct ReferenceOnLog {
-  // "rate unit: ..." of each unit with which it does not agree
-  std::vector<std::string> deviations;
-  std::vector<std::string>
-      not_judged;           // "attitude unit: ..." of each unit that is shown too little
+  // "rate unit: ...": a unit with which it does not agree, and one of which the log shows too
+  // little.
+  std::vector<std::string> deviations, not_judged;
   bool any_passes = false;  // of the units
 
   bool agrees() const { return deviations.empty(); }

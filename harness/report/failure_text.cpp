@@ -58,9 +58,9 @@ std::string first_deviation(const Deviation& deviation, Level level) {
 
 std::string where_to_look(const Deviation& deviation) {
   if (stages_of(deviation) == only(Stage::input)) {
-    return "  each output agrees with the reference's for the same inputs, so look first at "
-           "vectors that\n"
-           "  are no flights: small differences of outputs add up in a flight\n";
+    return "  each output agrees with the reference's for the same inputs: small differences add "
+           "up\n"
+           "  in a flight; look first at failing vectors that are no flights\n";
   }
   return fmt::format(
       "  look first at the {}: no output of an earlier stage deviates up to this tick\n",

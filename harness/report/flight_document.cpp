@@ -252,8 +252,7 @@ std::string flight_conclusion(const std::vector<SimulatedFlight>& flights, const
   if (any_deviates && shown.result.verdict == Verdict::pass) {
     return fmt::format(
         "{} the metrics are within their bounds, which is exit code 0, but the outputs deviate "
-        "from "
-        "the reference's for the same inputs; `attest run` judges them",
+        "from the reference's for the same inputs; `attest run` judges them",
         capitals(name_of(RowVerdict::differs)));
   }
   std::string out =

@@ -116,7 +116,7 @@ TEST(FindingText, OfAFlightWhoseOutputsAreRightForTheirInputsBlamesNoStage) {
   Deviation first = deviation("out/vehicle_rates_setpoint.roll", 17, -1.5F, -1, 0.125);
   first.stages = only(Stage::input);
   EXPECT_THAT(finding_text(failing(first), Level::numeric),
-              HasSubstr("  each output agrees with the reference's for the same inputs, so look"));
+              HasSubstr("  each output agrees with the reference's for the same inputs: small"));
   EXPECT_THAT(failure_headline(failing(first)), HasSubstr("want -1 (flight as a whole)"));
 }
 
